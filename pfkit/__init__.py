@@ -1,0 +1,59 @@
+"""pfkit: particle filters for robot localisation, small and readable.
+
+``import pfkit as pf`` gives every name of the core (layers L0 to L5). The core needs NumPy
+and the standard library only, so that the same code runs in Jupyter, in the tests and in the
+page. `pfkit.plotting`, `pfkit.widgets`, `pfkit.explore` and `pfkit.labs` are imported by name.
+"""
+
+# L0: the ground
+from pfkit.errors import (
+    DataError,
+    DegenerateWeightsError,
+    ParameterError,
+    PfkitError,
+    ShapeError,
+    UnknownLandmarkError,
+)
+from pfkit.geometry import between, circular_mean, compose, inverse, wrap
+
+# L1: beliefs, logs, maps, resampling
+from pfkit.particles import (
+    Particles,
+    equal_log_weights,
+    ess,
+    from_weights,
+    gaussian_prior,
+    normalise,
+    uniform_prior,
+)
+from pfkit.log import Log, Step
+from pfkit.maps import LandmarkMap
+from pfkit.resampling import SCHEMES, multinomial, residual, stratified, systematic
+
+# L2: models, answers
+from pfkit.motion import (
+    MotionModel,
+    OdometryMotion,
+    VelocityMotion,
+    drive_arc,
+    odometry_control,
+)
+from pfkit.sensors import (
+    OutlierMixture,
+    Range,
+    RangeBearing,
+    Sensor,
+    SensorModel,
+    log_gaussian,
+    log_student,
+)
+from pfkit.estimators import covariance, mean_pose
+
+# L3: filters
+from pfkit.filters import History, Info, predict, resample, run, select, step, update
+
+# L4: simulation, data, judgement
+
+# L5: studies
+
+__version__ = "0.1.0"

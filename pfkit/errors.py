@@ -1,0 +1,102 @@
+"""Named errors, and the few checks that raise them.
+
+Every public function checks its input once, at the boundary, and says three things:
+what was wrong, the value it got, and the remedy. All errors derive from `PfkitError`,
+which is a `ValueError`, so ``except ValueError`` still works for those who prefer it.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+Shape = int | tuple[int, ...]
+
+
+class PfkitError(ValueError):
+    """Base of every error that pfkit raises on purpose."""
+
+
+class ShapeError(PfkitError):
+    """An array has the wrong shape; components come first: ``(3, M)``, not ``(M, 3)``."""
+
+
+class ParameterError(PfkitError):
+    """A parameter has a value that the model does not allow."""
+
+
+class DataError(PfkitError):
+    """A data file or a measurement cannot be used; names file, line and reason."""
+
+
+class DegenerateWeightsError(PfkitError):
+    """Every particle has weight zero (or a weight is NaN): there is nothing to normalise."""
+
+
+class UnknownLandmarkError(PfkitError):
+    """A measurement names a landmark that the map does not have."""
+
+
+def require_finite(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
+    """Return `value` as a float array; raise `error` if it is not numeric and finite."""
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise error(f"{name} must be numbers, got {value!r:.80}; pass floats or an array") from None
+    if not np.isfinite(array).all():
+        bad = array[~np.isfinite(array)].flat[0]
+        raise error(f"{name} must be finite, got {bad}; remove or repair that value")
+    return array
+
+
+def require_positive(name: str, value: Any) -> np.ndarray:
+    """Return `value` as a float array; raise `ParameterError` unless every entry is > 0."""
+    array = require_finite(name, value)
+    if not (array > 0).all():
+        raise ParameterError(f"{name} must be > 0, got {array.min()}; a noise of 0 has no density")
+    return array
+
+
+def require_non_negative(name: str, value: Any) -> np.ndarray:
+    """Return `value` as a float array; raise `ParameterError` unless every entry is >= 0."""
+    array = require_finite(name, value)
+    if not (array >= 0).all():
+        raise ParameterError(f"{name} must be >= 0, got {array.min()}; drop the sign")
+    return array
+
+
+def require_fraction(name: str, value: Any) -> float:
+    """Return `value` as a float; raise `ParameterError` unless it lies in [0, 1]."""
+    array = require_finite(name, value)
+    if array.ndim or not 0 <= array <= 1:
+        raise ParameterError(f"{name} must be one number in [0, 1], got {value!r}")
+    return float(array)
+
+
+def require_count(name: str, value: Any, least: int = 1) -> int:
+    """Return `value` as an int; raise `ParameterError` unless it is a whole number >= least."""
+    whole = isinstance(value, int | np.integer) and not isinstance(value, bool)
+    if not whole or value < least:
+        raise ParameterError(f"{name} must be a whole number >= {least}, got {value!r}")
+    return int(value)
+
+
+def require_shape(name: str, value: Shape) -> tuple[int, ...]:
+    """Read a number M, or a shape such as (B, M), as a tuple of whole numbers >= 1."""
+    shape = value if isinstance(value, tuple) else (value,)
+    return tuple(require_count(name, n) for n in shape)
+
+
+def require_components(name: str, value: Any, n: int) -> np.ndarray:
+    """Return `value` as a float array whose first axis has length `n`; else `ShapeError`."""
+    try:
+        array = np.asarray(value, dtype=float)
+    except (TypeError, ValueError):
+        raise ShapeError(f"{name} must be an array of numbers, got {value!r:.80}") from None
+    if array.ndim == 0 or array.shape[0] != n:
+        hint = "; transpose it" if array.ndim == 2 and array.shape[1] == n else ""
+        raise ShapeError(
+            f"{name} must have its {n} components first, shape ({n}, ...), got {array.shape}{hint}"
+        )
+    return array

@@ -1,0 +1,285 @@
+r"""The particle filter: predict, update, resample.
+
+The Bayes filter alternates two lines,
+
+.. math:: \overline{bel}(x_t) = \int p(x_t \mid u_t, x_{t-1})\, bel(x_{t-1})\, dx_{t-1},
+          \qquad bel(x_t) = \eta\, p(z_t \mid x_t)\, \overline{bel}(x_t) .
+
+With particles each line becomes a loop body. *Predict* moves every particle by a draw from
+the motion model. *Update* multiplies every weight by the likelihood of the measurement; the
+sum of what results, before it is divided out, estimates the evidence p(z_t | z_{1:t-1}).
+*Resample* turns weights into copies when too few particles carry the weight. It adds noise
+and no information, so we do it only when the effective sample size says so, and never
+without a measurement.
+
+State and diagnostics are kept apart: `step` returns the new belief and an `Info`.
+Everything works for one filter ``(D, M)`` and for B side by side ``(D, B, M)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pfkit.errors import ShapeError, require_fraction
+from pfkit.estimators import covariance, mean_pose
+from pfkit.log import Log
+from pfkit.motion import MotionModel
+from pfkit.particles import Particles, equal_log_weights, normalise
+from pfkit.resampling import Resampler, systematic
+from pfkit.sensors import SensorModel
+
+Array = NDArray[np.float64]
+
+
+class Info(NamedTuple):
+    """What happened in one step.
+
+    Attributes
+    ----------
+    log_evidence : float or (B,), log p(z_t | z_{1:t-1}); 0 without a measurement
+    ess : float or (B,), effective sample size before any resampling
+    resampled : bool or (B,)
+    ancestors : int64 array (M,) or (B, M): which particle each one descends from
+    """
+
+    log_evidence: Array | np.float64
+    ess: Array | np.float64
+    resampled: NDArray[np.bool_] | np.bool_
+    ancestors: NDArray[np.int64]
+
+
+def predict(
+    bel: Particles, u: ArrayLike, motion: MotionModel, rng: np.random.Generator
+) -> Particles:
+    r"""Move every particle by a draw from the motion model.
+
+    .. math:: x_t^{[m]} \sim p(x_t \mid u_t, x_{t-1}^{[m]})
+
+    Parameters
+    ----------
+    bel : Particles
+    u : array_like (n,), the control, or (n, B, 1) with one per filter of a batch
+    motion : MotionModel
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    Particles with the same weights
+
+    Notes
+    -----
+    Source: Probabilistic Robotics, Table 4.3, line 4.
+    """
+    return Particles(motion.sample(bel.state, np.asarray(u, dtype=float), rng), bel.log_w)
+
+
+def update(
+    bel: Particles, z: ArrayLike | None, sensor: SensorModel
+) -> tuple[Particles, Array | np.float64]:
+    r"""Weigh every particle by the likelihood of the measurement.
+
+    .. math:: w_t^{[m]} = \eta\, p(z_t \mid x_t^{[m]})\, w_{t-1}^{[m]}
+
+    Parameters
+    ----------
+    bel : Particles
+    z : array_like (n, K), or None; no measurement leaves the belief as it is
+    sensor : SensorModel
+
+    Returns
+    -------
+    Particles
+    log_evidence : float or (B,)
+        :math:`\log \sum_m w_{t-1}^{[m]} p(z_t \mid x_t^{[m]})`.
+
+    Raises
+    ------
+    DegenerateWeightsError
+        If the measurement is impossible for every particle, or a likelihood is NaN.
+    ShapeError
+        If the sensor does not return one number per particle.
+
+    Notes
+    -----
+    Source: Probabilistic Robotics, Table 4.3, line 5.
+    """
+    if z is None or _columns(z) == 0:
+        return bel, np.zeros(bel.log_w.shape[:-1])[()]
+    log_likelihood = sensor.log_likelihood(np.asarray(z, dtype=float), bel.state)
+    if np.shape(log_likelihood) != bel.log_w.shape:
+        raise ShapeError(
+            f"the sensor must return one log-likelihood per particle, shape {bel.log_w.shape}, "
+            f"got {np.shape(log_likelihood)}; sum over the measurements inside the sensor"
+        )
+    log_w, log_evidence = normalise(bel.log_w + log_likelihood)
+    return Particles(bel.state, log_w), log_evidence
+
+
+def _columns(z: ArrayLike) -> int:
+    shape = np.shape(z)
+    return shape[1] if len(shape) > 1 else 1
+
+
+def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
+    """Copy the named ancestors into a set of equal weights: indices (n,) or (B, n)."""
+    if bel.log_w.ndim == 1:
+        state = bel.state.take(ancestors, axis=1)
+    else:
+        state = np.take_along_axis(bel.state, ancestors[None], axis=-1)
+    return Particles(state, equal_log_weights(ancestors.shape))
+
+
+def resample(
+    bel: Particles, scheme: Resampler, rng: np.random.Generator, n: int | None = None
+) -> Particles:
+    r"""Replace weights by copies: particle m appears N_m times, :math:`E[N_m] = n w_m`.
+
+    Parameters
+    ----------
+    bel : Particles
+    scheme : Resampler
+        ``systematic``, ``stratified``, ``residual``, ``multinomial`` or a function of yours.
+    rng : numpy.random.Generator
+    n : int, optional
+        New number of particles; as many as before if left out.
+
+    Returns
+    -------
+    Particles with equal weights
+
+    Notes
+    -----
+    Source: Probabilistic Robotics, Table 4.3, lines 8 to 11.
+    """
+    return select(bel, scheme(bel.w, rng, n))
+
+
+def step(
+    bel: Particles,
+    u: ArrayLike,
+    z: ArrayLike | None,
+    motion: MotionModel,
+    sensor: SensorModel,
+    rng: np.random.Generator,
+    scheme: Resampler = systematic,
+    threshold: float = 0.5,
+) -> tuple[Particles, Info]:
+    """One turn of the filter: predict, update, resample if ESS < threshold * M.
+
+    Parameters
+    ----------
+    bel, u, z, motion, sensor, rng, scheme
+        As in `predict`, `update` and `resample`.
+    threshold : float in [0, 1]
+        0 never resamples; 1 resamples after every informative measurement.
+
+    Returns
+    -------
+    Particles
+    Info
+
+    Notes
+    -----
+    In a batch only those filters resample whose own ESS is low.
+    """
+    bel = predict(bel, u, motion, rng)
+    bel, log_evidence = update(bel, z, sensor)
+    ess = bel.ess
+    ancestors = np.broadcast_to(np.arange(bel.M, dtype=np.int64), bel.log_w.shape)
+    poor = np.asarray(ess < threshold * bel.M)
+    if z is None or _columns(z) == 0:
+        poor = np.zeros_like(poor)
+    if not poor.any():
+        return bel, Info(log_evidence, ess, poor[()], ancestors)
+    if poor.ndim == 0:
+        ancestors = scheme(bel.w, rng)
+        return select(bel, ancestors), Info(log_evidence, ess, poor[()], ancestors)
+    ancestors = ancestors.copy()
+    ancestors[poor] = scheme(bel.w[poor], rng)
+    copies = select(bel, ancestors)
+    log_w = np.where(poor[..., None], copies.log_w, bel.log_w)
+    return Particles(copies.state, log_w), Info(log_evidence, ess, poor, ancestors)
+
+
+@dataclass(frozen=True)
+class History:
+    """What a filter said along a log.
+
+    Parameters
+    ----------
+    t : array (T,), seconds
+    estimate : array (D, T) or (D, T, B), one answer per step
+    covariance : array (D, D, T) or (D, D, T, B)
+    ess : array (T,) or (T, B), before any resampling
+    log_evidence : array (T,) or (T, B)
+    resampled : bool array (T,) or (T, B)
+    truth : array (3, T) or (3, T, B), or None
+    bel : Particles, the last belief
+    """
+
+    t: Array
+    estimate: Array
+    covariance: Array
+    ess: Array
+    log_evidence: Array
+    resampled: NDArray[np.bool_]
+    truth: Array | None
+    bel: Particles
+
+    @property
+    def position_sd(self) -> Array:
+        """Root of the summed position variances, metres: (T,) or (T, B)."""
+        return np.sqrt(self.covariance[0, 0] + self.covariance[1, 1])
+
+    def __repr__(self) -> str:
+        return f"History({len(self.t)} steps, resampled {int(np.sum(self.resampled))} times)"
+
+
+def run(
+    log: Log,
+    bel: Particles,
+    motion: MotionModel,
+    sensor: SensorModel,
+    rng: np.random.Generator,
+    scheme: Resampler = systematic,
+    threshold: float = 0.5,
+    estimator: Callable[[Particles], Array] = mean_pose,
+    watch: Callable[[int, Particles, Info], object] | None = None,
+) -> History:
+    """Run the filter along a log.
+
+    Parameters
+    ----------
+    log : Log
+    bel : Particles, the belief before the first control
+    motion, sensor, rng, scheme, threshold
+        As in `step`.
+    estimator : function of a Particles
+        Turns each belief into an answer (D,) or (D, B).
+    watch : function (k, bel, info), optional
+        Called after each step: for progress, film, or genealogy.
+
+    Returns
+    -------
+    History
+    """
+    require_fraction("threshold", threshold)
+    T, D, batch = len(log), bel.state.shape[0], bel.log_w.shape[:-1]
+    estimate, spread = np.empty((D, T, *batch)), np.empty((D, D, T, *batch))
+    ess, log_evidence = np.empty((T, *batch)), np.empty((T, *batch))
+    resampled = np.zeros((T, *batch), dtype=bool)
+    for k, (_, u, z, _) in enumerate(log):
+        bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold)
+        log_evidence[k], ess[k], resampled[k] = info.log_evidence, info.ess, info.resampled
+        estimate[:, k], spread[:, :, k] = estimator(bel), covariance(bel)
+        if watch is not None:
+            watch(k, bel, info)
+    truth = log.truth
+    if truth is not None and batch and truth.ndim == 4:
+        truth = truth[..., 0]
+    return History(log.t, estimate, spread, ess, log_evidence, resampled, truth, bel)

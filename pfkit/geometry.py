@@ -1,0 +1,126 @@
+"""Angles and rigid motions of the plane.
+
+A robot on a floor has a pose: a position (x, y) and a heading theta. Headings live on a
+circle, not on a line: 359 degrees and 1 degree are two degrees apart, and their mean is 0,
+not 180. Whatever subtracts or averages headings must therefore know about the circle;
+`wrap` and `circular_mean` are the two functions that do.
+
+A pose is also a rigid motion: "go to (x, y), then turn by theta". Motions compose, and each
+has an inverse. That group is called SE(2). Odometry between two instants is the motion
+``between(pose0, pose1)``, and a map that is shifted and turned by a motion g moves every
+right answer along: ``compose(g, pose)``. The tests lean on that equivariance.
+
+All functions take components first: a pose is ``(3, ...)`` and the rest broadcasts.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pfkit.errors import require_components
+
+TWO_PI = 2.0 * np.pi
+
+
+def wrap(angle: ArrayLike) -> NDArray[np.float64]:
+    r"""Map angles to the interval (-pi, pi].
+
+    .. math:: \mathrm{wrap}(a) = a - 2\pi \lceil a / 2\pi - 1/2 \rceil
+
+    Parameters
+    ----------
+    angle : array_like, any shape, radians
+
+    Returns
+    -------
+    array of the same shape, radians in (-pi, pi]
+    """
+    angle = np.asarray(angle, dtype=float)
+    return angle - TWO_PI * np.ceil(angle / TWO_PI - 0.5)
+
+
+def compose(pose: ArrayLike, motion: ArrayLike) -> NDArray[np.float64]:
+    r"""Carry out a motion that is given in the frame of a pose.
+
+    .. math:: a \oplus b = (a_x + b_x \cos a_\theta - b_y \sin a_\theta,\;
+                            a_y + b_x \sin a_\theta + b_y \cos a_\theta,\;
+                            \mathrm{wrap}(a_\theta + b_\theta))
+
+    Parameters
+    ----------
+    pose, motion : array_like (3, ...), metres and radians; trailing axes broadcast
+
+    Returns
+    -------
+    array (3, ...), the pose after the motion
+
+    Raises
+    ------
+    ShapeError
+        If the first axis of either argument does not have length 3.
+    """
+    x, y, theta = require_components("pose", pose, 3)
+    dx, dy, dtheta = require_components("motion", motion, 3)
+    c, s = np.cos(theta), np.sin(theta)
+    return np.stack((x + c * dx - s * dy, y + s * dx + c * dy, wrap(theta + dtheta)))
+
+
+def inverse(pose: ArrayLike) -> NDArray[np.float64]:
+    r"""The motion that undoes a pose: ``compose(pose, inverse(pose))`` is the origin.
+
+    Parameters
+    ----------
+    pose : array_like (3, ...), metres and radians
+
+    Returns
+    -------
+    array (3, ...)
+    """
+    x, y, theta = require_components("pose", pose, 3)
+    c, s = np.cos(theta), np.sin(theta)
+    return np.stack((-c * x - s * y, s * x - c * y, wrap(-theta)))
+
+
+def between(pose0: ArrayLike, pose1: ArrayLike) -> NDArray[np.float64]:
+    """The motion from one pose to another, in the frame of the first.
+
+    ``compose(pose0, between(pose0, pose1)) == pose1``.
+
+    Parameters
+    ----------
+    pose0, pose1 : array_like (3, ...), metres and radians; trailing axes broadcast
+
+    Returns
+    -------
+    array (3, ...)
+    """
+    return compose(inverse(pose0), pose1)
+
+
+def circular_mean(
+    theta: ArrayLike, w: ArrayLike | None = None, axis: int = -1
+) -> NDArray[np.float64]:
+    r"""Weighted mean direction.
+
+    .. math:: \bar\theta = \mathrm{atan2}\Big(\sum_m w_m \sin\theta_m,\;
+                                              \sum_m w_m \cos\theta_m\Big)
+
+    Parameters
+    ----------
+    theta : array_like (..., M), radians
+    w : array_like (..., M), optional
+        Weights; equal if left out. They need not sum to one.
+    axis : int
+        The axis that is averaged away.
+
+    Returns
+    -------
+    array (...), radians in (-pi, pi]. For directions that cancel exactly the mean is not
+    defined and the result is arbitrary; look at the resultant length before you trust it.
+    """
+    theta = np.asarray(theta, dtype=float)
+    weights = np.ones(()) if w is None else np.asarray(w, dtype=float)
+    return np.arctan2(
+        np.sum(weights * np.sin(theta), axis=axis), np.sum(weights * np.cos(theta), axis=axis)
+    )

@@ -1,0 +1,264 @@
+r"""Particles: a belief as a weighted set of guesses.
+
+A particle filter carries its belief about the state as M guesses (particles) with weights,
+
+.. math:: bel(x) \approx \sum_{m=1}^M w^{[m]}\, \delta(x - x^{[m]}), \qquad \sum_m w^{[m]} = 1 .
+
+Weights are products of many likelihoods and soon become smaller than any floating-point
+number. So we store their logarithms, and normalise with the log-sum-exp identity
+
+.. math:: \log \sum_m e^{\ell_m} = \ell_* + \log \sum_m e^{\ell_m - \ell_*},
+          \qquad \ell_* = \max_m \ell_m ,
+
+whose largest term is one, so that nothing overflows and the largest never underflows.
+
+How many of the M particles still matter? The effective sample size
+
+.. math:: \mathrm{ESS} = 1 / \sum_m (w^{[m]})^2
+
+is M for equal weights and 1 when one particle holds everything. It looks only at weights:
+M copies of one wrong guess have a perfect ESS of M.
+
+States are stored components first: ``(D, M)`` for one filter, ``(D, B, M)`` for B
+independent filters run side by side. Log-weights have the shape without the first axis.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pfkit.errors import (
+    DegenerateWeightsError,
+    ParameterError,
+    Shape,
+    ShapeError,
+    require_components,
+    require_finite,
+    require_shape,
+)
+from pfkit.geometry import wrap
+
+
+class SamplesPoses(Protocol):
+    """A map that can draw poses uniformly over the places where the robot can be."""
+
+    def sample_poses(self, shape: Shape, rng: np.random.Generator) -> NDArray[np.float64]: ...
+
+
+@dataclass(frozen=True)
+class Particles:
+    """A weighted particle set.
+
+    Parameters
+    ----------
+    state : array (D, M) or (D, B, M)
+        The guesses, components first; a pose has D = 3: x and y in metres, theta in radians.
+    log_w : array (M,) or (B, M)
+        Natural logarithms of weights that sum to one over the last axis. The filter's own
+        functions keep that promise; build a set of your own with `from_weights`.
+
+    Raises
+    ------
+    ShapeError
+        If the shapes do not belong together, or the set is empty.
+    """
+
+    state: NDArray[np.float64]
+    log_w: NDArray[np.float64]
+
+    def __post_init__(self) -> None:
+        if self.state.ndim < 2 or self.state.shape[1:] != self.log_w.shape:
+            raise ShapeError(
+                f"state (D, M) and log_w (M,) must match, got {self.state.shape} and "
+                f"{self.log_w.shape}; components come first, so transpose an (M, D) array"
+            )
+        if self.log_w.shape[-1] == 0:
+            raise ShapeError("a particle set must not be empty, got M = 0; draw at least one")
+
+    @property
+    def w(self) -> NDArray[np.float64]:
+        """Weights (M,) or (B, M), summing to one over the last axis."""
+        return np.exp(self.log_w)
+
+    @property
+    def M(self) -> int:
+        """Number of particles (in each filter of a batch)."""
+        return int(self.log_w.shape[-1])
+
+    @property
+    def ess(self) -> NDArray[np.float64] | np.float64:
+        """Effective sample size, a number (or (B,) for a batch) between 1 and M."""
+        return ess(self.log_w)
+
+    def __repr__(self) -> str:
+        shape = " x ".join(str(n) for n in self.log_w.shape)
+        return f"Particles({shape} of dimension {self.state.shape[0]}, ESS {np.mean(self.ess):.1f})"
+
+
+def normalise(
+    log_w: NDArray[np.float64],
+) -> tuple[NDArray[np.float64], NDArray[np.float64] | np.float64]:
+    r"""Shift log-weights so that their weights sum to one.
+
+    .. math:: \ell_m \leftarrow \ell_m - \log\sum_k e^{\ell_k}
+
+    Parameters
+    ----------
+    log_w : array (..., M)
+        Unnormalised log-weights; ``-inf`` is a weight of zero.
+
+    Returns
+    -------
+    log_w : array (..., M)
+        Normalised: logsumexp is zero over the last axis.
+    log_sum : array (...)
+        The logarithm of the sum that was divided out. In `filters.update` it is the log of
+        p(z_t | z_{1:t-1}), the evidence.
+
+    Raises
+    ------
+    DegenerateWeightsError
+        If all weights of a set are zero, or one is NaN or infinite.
+    """
+    peak = log_w.max(axis=-1, keepdims=True)
+    if not np.isfinite(peak).all():
+        bad = peak[~np.isfinite(peak)].flat[0]
+        what = "every particle has weight 0" if bad == -np.inf else f"a log-weight is {bad}"
+        raise DegenerateWeightsError(
+            f"{what}: the measurement is impossible for all {log_w.shape[-1]} particles. "
+            "Widen the sensor noise, wrap the sensor in OutlierMixture, use more particles, "
+            "or check that measurement and map share their units"
+        )
+    log_sum = peak + np.log(np.exp(log_w - peak).sum(axis=-1, keepdims=True))
+    return log_w - log_sum, log_sum[..., 0]
+
+
+def ess(log_w: NDArray[np.float64]) -> NDArray[np.float64] | np.float64:
+    r"""Effective sample size of normalised log-weights.
+
+    .. math:: \mathrm{ESS} = \frac{1}{\sum_m (w^{[m]})^2}
+
+    Parameters
+    ----------
+    log_w : array (..., M), normalised
+
+    Returns
+    -------
+    array (...), between 1 and M
+
+    Notes
+    -----
+    Source: A. Kong, J. S. Liu and W. H. Wong, "Sequential imputations and Bayesian missing
+    data problems", JASA 89 (1994). ESS = M / (1 + CV^2) with CV the coefficient of variation.
+    """
+    w = np.exp(log_w)
+    return 1.0 / np.einsum("...m,...m->...", w, w)
+
+
+def equal_log_weights(shape: Shape) -> NDArray[np.float64]:
+    """Log-weights of a set in which every particle counts the same: ``-log M``."""
+    shape = (shape,) if isinstance(shape, int) else shape
+    return np.full(shape, -np.log(shape[-1]))
+
+
+def from_weights(state: ArrayLike, w: ArrayLike | None = None) -> Particles:
+    """Build a particle set from states and (unnormalised, linear) weights.
+
+    Parameters
+    ----------
+    state : array_like (D, M) or (D, B, M)
+    w : array_like (M,) or (B, M), optional
+        Non-negative weights; equal if left out.
+
+    Returns
+    -------
+    Particles
+
+    Raises
+    ------
+    ParameterError
+        If a state is not finite, or a weight is negative, NaN or infinite.
+    DegenerateWeightsError
+        If all weights are zero.
+    ShapeError
+        If the shapes do not belong together or the set is empty.
+    """
+    state = require_finite("state", state)
+    if state.ndim < 2 or state.shape[-1] == 0:
+        raise ShapeError(f"state must have shape (D, M) with M >= 1, got {state.shape}")
+    if w is None:
+        return Particles(state, equal_log_weights(state.shape[1:]))
+    w = require_finite("w", w)
+    if (w < 0).any():
+        raise ParameterError(f"weights must be >= 0, got {w.min()}; likelihoods are never negative")
+    if w.shape != state.shape[1:]:
+        raise ShapeError(f"w must have shape {state.shape[1:]} to match state, got {w.shape}")
+    with np.errstate(divide="ignore"):  # log 0 = -inf is what a weight of zero means
+        return Particles(state, normalise(np.log(w))[0])
+
+
+def uniform_prior(M: Shape, world: SamplesPoses, rng: np.random.Generator) -> Particles:
+    """Know nothing but the map: poses uniform over its free space, heading on the circle.
+
+    Parameters
+    ----------
+    M : int or (B, M)
+        Number of particles, or the shape of a batch.
+    world : map with ``sample_poses(shape, rng)``
+        `LandmarkMap` (its bounding box) or `OccupancyGrid` (its free cells).
+    rng : numpy.random.Generator
+
+    Returns
+    -------
+    Particles with equal weights
+
+    Notes
+    -----
+    Source: Probabilistic Robotics, Table 8.2 and section 8.3.1 (global localisation).
+    """
+    shape = require_shape("number of particles M", M)
+    return Particles(world.sample_poses(shape, rng), equal_log_weights(shape))
+
+
+def gaussian_prior(
+    M: Shape, mean: ArrayLike, Sigma: ArrayLike, rng: np.random.Generator, heading: bool = True
+) -> Particles:
+    """Know the state up to a Gaussian error.
+
+    Parameters
+    ----------
+    M : int or (B, M)
+    mean : array_like (D,), metres and radians
+    Sigma : array_like (D, D) covariance, or (D,) standard deviations, which may be 0
+    rng : numpy.random.Generator
+    heading : bool
+        Whether the third component is a heading, to be wrapped.
+
+    Returns
+    -------
+    Particles with equal weights
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If mean and Sigma do not match, or Sigma is not a covariance.
+    """
+    mean, Sigma = require_finite("mean", mean), require_finite("Sigma", Sigma)
+    shape, D = require_shape("number of particles M", M), mean.size
+    if mean.ndim != 1 or Sigma.shape not in ((D,), (D, D)):
+        raise ShapeError(f"mean (D,) needs Sigma (D,) or (D, D), got {mean.shape}, {Sigma.shape}")
+    if Sigma.ndim == 1:
+        Sigma = np.diag(Sigma**2)
+    values, vectors = np.linalg.eigh(Sigma)
+    if not np.allclose(Sigma, Sigma.T) or values[0] < -1e-9 * max(values[-1], 1.0):
+        raise ParameterError(f"Sigma must be symmetric and positive, got eigenvalues {values}")
+    root = vectors * np.sqrt(np.maximum(values, 0.0))
+    noise = np.tensordot(root, rng.standard_normal((D, *shape)), axes=1)
+    state = mean.reshape(D, *(1,) * len(shape)) + noise
+    if heading and D >= 3:
+        state[2] = wrap(state[2])
+    return Particles(require_components("state", state, D), equal_log_weights(shape))
