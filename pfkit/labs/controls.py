@@ -1,0 +1,66 @@
+"""Radio buttons for choices and predictions, where a front end can show them.
+
+`offer` is called when a choice is still unanswered. It shows controls only if the cell was run by
+a person in a front end: JupyterLab, Notebook 7 and VS Code send the id of the cell with each
+request, programs that execute notebooks (nbclient, nbval, the grader) do not. So a stored notebook
+never holds a widget that nothing drives, and plain calls always work.
+"""
+
+from __future__ import annotations
+
+import sys
+from typing import TYPE_CHECKING, Any
+
+from pfkit.labs.items import Choice, Item, Prediction
+
+if TYPE_CHECKING:
+    from pfkit.labs.lab import Lab
+
+
+def front_end_present() -> bool:
+    """Did a person's front end send the request that is running now?"""
+    ipython = sys.modules.get("IPython")
+    shell = ipython.get_ipython() if ipython else None
+    kernel = getattr(shell, "kernel", None)
+    if kernel is None:
+        return False
+    try:
+        return bool(kernel.get_parent("shell").get("metadata", {}).get("cellId"))
+    except Exception:  # a kernel without that method is no front end we know
+        return False
+
+
+def offer(lab: Lab, item: Item) -> bool:
+    """Show controls for a choice or a prediction; False where that is not possible."""
+    if not isinstance(item, Choice | Prediction) or not front_end_present():
+        return False
+    try:
+        import ipywidgets
+        from IPython.display import display
+    except ImportError:
+        return False
+    display(build(lab, item, ipywidgets))
+    return True
+
+
+def build(lab: Lab, item: Choice | Prediction, widgets: Any) -> Any:
+    """The control: one radio button per option, a slider for sureness, a button, the verdict."""
+    radio = widgets.RadioButtons(
+        options=[(f"({k}) {text}", k) for k, text in item.options.items()],
+        value=None,
+        layout=widgets.Layout(width="max-content"),
+    )
+    is_guess = isinstance(item, Prediction)
+    sure = widgets.IntSlider(value=60, min=0, max=100, step=5, description="sure, %")
+    button = widgets.Button(description="Lock" if is_guess else "Check")
+    told = widgets.HTML()
+
+    def press(_: Any) -> None:
+        given = (radio.value, sure.value) if is_guess else radio.value
+        verdict = lab.check(item.id, given if radio.value else ...)
+        hand_in = f"To hand it in, write {item.id} = {given!r} in the cell above."
+        told.value = verdict._repr_html_() + (f"<p>{hand_in}</p>" if radio.value else "")
+
+    button.on_click(press)
+    parts = [radio, sure, button, told] if is_guess else [radio, button, told]
+    return widgets.VBox(parts)

@@ -1,0 +1,127 @@
+"""Run a student's code so that nothing it does can end the lesson.
+
+A check calls functions that students wrote an hour ago. They raise, recurse without end, print a
+megabyte, call ``sys.exit`` or never return. `guarded` turns each of these into a short sentence.
+
+It is a seat belt, not a sandbox: code that kills the process, or writes a file, does so.
+"""
+
+import contextlib
+import io
+import signal
+import sys
+import threading
+import traceback
+import warnings
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+
+PRINT_LIMIT = 2_000  # characters of a student's output that we keep
+TIME_LIMIT = 10.0  # seconds, where the platform has an alarm clock
+
+
+class TooSlow(BaseException):
+    """The alarm rang. Not an `Exception`, so that ``except Exception`` does not swallow it."""
+
+
+class _Capped(io.TextIOBase):
+    """A text stream that keeps the first characters and counts the rest."""
+
+    def __init__(self, limit: int) -> None:
+        self.kept, self.room, self.dropped = [], limit, 0
+
+    def writable(self) -> bool:
+        return True
+
+    def write(self, text: str) -> int:
+        head = text[: self.room]
+        self.kept.append(head)
+        self.room -= len(head)
+        self.dropped += len(text) - len(head)
+        return len(text)
+
+    def getvalue(self) -> str:
+        more = f"\n[{self.dropped} more characters]" if self.dropped else ""
+        return "".join(self.kept) + more
+
+
+@contextlib.contextmanager
+def _alarm(seconds: float) -> Iterator[None]:
+    """Raise `TooSlow` after some seconds; does nothing off the main thread or off Unix."""
+    can = hasattr(signal, "setitimer") and threading.current_thread() is threading.main_thread()
+    if not can:
+        yield
+        return
+
+    def ring(*_: object) -> None:
+        raise TooSlow
+
+    before = signal.signal(signal.SIGALRM, ring)
+    signal.setitimer(signal.ITIMER_REAL, seconds, 0.5)  # rings again if a bare except ate it
+    try:
+        yield
+    finally:
+        signal.setitimer(signal.ITIMER_REAL, 0)
+        signal.signal(signal.SIGALRM, before)
+
+
+@contextlib.contextmanager
+def hushed(limit: int = PRINT_LIMIT) -> Iterator[_Capped]:
+    """Catch what is printed, and silence warnings of Python and NumPy."""
+    stream = _Capped(limit)
+    with (
+        contextlib.redirect_stdout(stream),
+        contextlib.redirect_stderr(stream),
+        warnings.catch_warnings(),
+        np.errstate(all="ignore"),
+    ):
+        warnings.simplefilter("ignore")
+        yield stream
+
+
+@dataclass(frozen=True)
+class Ran:
+    """What came of a call: a value, or an error in words, and what was printed."""
+
+    value: Any = None
+    error: str = ""
+    printed: str = ""
+
+
+def describe(error: BaseException) -> str:
+    """One line about an exception: its type, its message, the line of the student's code."""
+    if isinstance(error, TooSlow):
+        return f"stopped after {TIME_LIMIT:.0f} s: does a loop never end?"
+    if isinstance(error, RecursionError):
+        return "it calls itself without end (RecursionError)"
+    try:
+        message = " ".join(str(error).split())[:200]
+    except BaseException:
+        message = "(its message cannot be printed)"
+    return f"{type(error).__name__}: {message}".rstrip(": ") + _where(error)
+
+
+def _where(error: BaseException) -> str:
+    """``, line 3 of your function f``: the last frame that is not a file of a library."""
+    theirs = None
+    for frame in traceback.extract_tb(error.__traceback__):
+        if "<ipython-input" in frame.filename or "ipykernel_" in frame.filename:
+            theirs = frame
+    return f" (line {theirs.lineno} of the cell, in {theirs.name})" if theirs else ""
+
+
+def guarded(call: Callable[[], Any], seconds: float = TIME_LIMIT) -> Ran:
+    """Run ``call()``; whatever happens, come back with a `Ran`."""
+    depth = sys.getrecursionlimit()
+    with hushed() as stream:
+        try:
+            with _alarm(seconds):
+                value = call()
+            return Ran(value, "", stream.getvalue())
+        except BaseException as error:
+            return Ran(None, describe(error), stream.getvalue())
+        finally:
+            sys.setrecursionlimit(depth)

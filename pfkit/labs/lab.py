@@ -1,0 +1,321 @@
+"""`Lab`: the verbs a student uses, and the memory of what was answered.
+
+    from pfkit.labs import lab3 as lab
+
+    lab.check("q4b", systematic)              # a verdict; never raises
+    systematic = lab.use("q4b", systematic)   # your answer if it passes, else the reference
+    lab.predict("q7a", ("b", 70))             # locked: (b), 70 % sure
+    lab.summary()                             # points, and your calibration
+    lab.save(), lab.load()
+
+With the environment variable ``PFKIT_LABS_STRICT=1`` a check that is not passed raises
+`LabError`: the tests use it to prove that solutions pass and that stubs do not.
+"""
+
+import inspect
+import os
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from html import escape
+from pathlib import Path
+from typing import Any
+
+from pfkit.labs import calibration, controls, progress
+from pfkit.labs.guard import guarded
+from pfkit.labs.items import Experiment, Item, Judgement, Prediction, Text, is_unanswered
+from pfkit.labs.verdict import Line, Verdict
+
+FINE = ("passed", "recorded", "predicted")
+
+
+class LabError(AssertionError):
+    """Raised by `Lab.check` under the strict switch only."""
+
+
+@dataclass(frozen=True)
+class Question:
+    """A question of the lab, such as P3, with its items."""
+
+    id: str
+    title: str
+    items: tuple[Item, ...]
+
+
+class Lab:
+    """Questions, and one student's answers to them.
+
+    Parameters
+    ----------
+    name : str
+        ``"lab3"``; also names the progress file.
+    title : str
+    questions : sequence of Question
+    """
+
+    def __init__(self, name: str, title: str, questions: Sequence[Question]) -> None:
+        self.name, self.title, self.questions = name, title, tuple(questions)
+        self.items: dict[str, Item] = {}
+        for item in (i for q in self.questions for i in q.items):
+            if item.id in self.items:
+                raise ValueError(f"{name} has two items called {item.id!r}: rename one")
+            if item.after and not isinstance(self.items.get(item.after), Prediction):
+                raise ValueError(f"{item.id!r} comes after {item.after!r}: no such prediction")
+            self.items[item.id] = item
+        self.forget()
+
+    def forget(self) -> None:
+        """Start afresh, as a new student."""
+        self.verdicts: dict[str, Verdict] = {}
+        self.answers: dict[str, dict[str, str]] = {}
+        self.predictions: dict[str, dict[str, Any]] = {}
+        self._rungs: dict[tuple[str, str], int] = {}
+
+    def verbs(self) -> tuple[Callable[..., Any], ...]:
+        """``check, use, predict, answer, summary, save, load``, for a lab module to publish."""
+        return (
+            self.check, self.use, self.predict, self.answer, self.summary, self.save, self.load,
+        )  # fmt: skip
+
+    # -- answering ---------------------------------------------------------------------------
+
+    def check(self, item_id: str, answer: Any = ...) -> Verdict:
+        """Judge an answer. Never raises, unless the strict switch is on.
+
+        Parameters
+        ----------
+        item_id : str
+            Such as ``"q4b"``.
+        answer : object
+            A function, number, letter or text, as the question asks.
+        """
+        item = self.items.get(item_id) if isinstance(item_id, str) else None
+        if item is None:
+            verdict = self._unknown(item_id)
+        elif isinstance(item, Prediction):
+            verdict = self._predict(item, answer)
+        else:
+            verdict = self._check(item, answer)
+        if verdict.status == "unanswered" and item is not None:
+            controls.offer(self, item)
+        if os.environ.get("PFKIT_LABS_STRICT") == "1" and verdict.status not in FINE:
+            raise LabError(str(verdict))
+        return verdict
+
+    answer = check  # reads better for a letter, a number or a text
+
+    def predict(self, item_id: str, answer: Any = ...) -> Verdict:
+        """Lock a prediction, ``"a"`` or ``("a", 70)``: the letter, and how sure in per cent."""
+        return self.check(item_id, answer)
+
+    def use(self, item_id: str, answer: Any = ...) -> Any:
+        """Your answer if it passes, otherwise the reference, so that the notebook carries on."""
+        item = self.items.get(item_id) if isinstance(item_id, str) else None
+        if item is None:
+            print(self._unknown(item_id))
+            return answer
+        if self._judge(item, answer)[1] in FINE:
+            print(f"{item_id}: carrying on with your answer")
+            return answer
+        print(f"{item_id}: carrying on with the reference")
+        return item.solution()
+
+    def _unknown(self, item_id: Any) -> Verdict:
+        names = ", ".join(self.items)
+        given = repr(item_id)[:40] if isinstance(item_id, str) else type(item_id).__name__
+        return Verdict("?", "unknown", message=f"{self.name} has no item {given}, only {names}")
+
+    def _judge(self, item: Item, answer: Any) -> tuple[Judgement, str]:
+        """Judgement and status, safe against whatever the answer does."""
+
+        def judge() -> Judgement | None:
+            return None if is_unanswered(answer) else item.judge(answer)
+
+        ran = guarded(judge)
+        if ran.error:
+            return Judgement((Line("your answer can be run", False, ran.error),)), "wrong"
+        if ran.value is None:
+            return Judgement(()), "unanswered"
+        full, some = ran.value.fraction == 1, ran.value.fraction > 0
+        return ran.value, ran.value.status or ("passed" if full else "partial" if some else "wrong")
+
+    def _check(self, item: Item, answer: Any) -> Verdict:
+        judged, status = self._judge(item, answer)
+        if status == "unanswered":
+            return self._keep(Verdict(item.id, status, 0.0, item.points, "no answer yet"))
+        if item.after and item.after not in self.predictions:
+            told = f'predict first: lab.predict("{item.after}", ...)'
+            return self._keep(Verdict(item.id, "locked", 0.0, item.points, told))
+        self.answers[item.id] = {"source": _source(answer), "version": item.version}
+        by_hand = isinstance(item, Text)
+        verdict = Verdict(
+            item.id,
+            status,
+            0.0 if by_hand else item.points * judged.fraction,
+            item.points,
+            "kept for marking by hand" if status == "recorded" else "",
+            judged.lines,
+            self._hint(item, judged, status),
+            judged.misconception.name if judged.misconception else "",
+        )
+        return self._keep(verdict)
+
+    def _keep(self, verdict: Verdict) -> Verdict:
+        self.verdicts[verdict.item] = verdict
+        return verdict
+
+    def _hint(self, item: Item, judged: Judgement, status: str) -> str:
+        """One rung of one ladder; the next check of the same mistake shows the next rung."""
+        if status in FINE or judged.feedback:
+            return judged.feedback
+        mistake = judged.misconception
+        ladder = mistake.hints if mistake else item.hints
+        if not any(ladder):
+            return ""
+        key = (item.id, mistake.name if mistake else "")
+        rung = min(self._rungs.get(key, 0), len(ladder) - 1)
+        self._rungs[key] = rung + 1
+        named = f"Your answer {mistake.words}. " if mistake else ""
+        return f"{named}Hint {rung + 1} of {len(ladder)}: {ladder[rung]}"
+
+    def _predict(self, item: Prediction, answer: Any) -> Verdict:
+        judged, status = self._judge(item, answer)
+        locked = self.predictions.get(item.id)
+        if status != "predicted" and not locked:
+            told = "no prediction yet" if status == "unanswered" else ""
+            return self._keep(Verdict(item.id, status, 0.0, item.points, told, judged.lines))
+        note = "locked; now run the experiment"
+        if locked is None:
+            choice, sure = item.parse(answer)
+            locked = {"choice": choice, "sure": sure, "version": item.version}
+            self.predictions[item.id] = locked
+            self.answers[item.id] = {"source": _source(answer), "version": item.version}
+        elif status == "predicted" and item.parse(answer)[0] != locked["choice"]:
+            note = f"it stays ({locked['choice']}): a prediction is locked once made"
+        sure = "" if locked["sure"] is None else f", {locked['sure']:.0f} % sure"
+        told = f"({locked['choice']}){sure}; {note}"
+        return self._keep(Verdict(item.id, "predicted", item.points, item.points, told))
+
+    # -- looking back ------------------------------------------------------------------------
+
+    def report(self) -> dict[str, dict[str, Any]]:
+        """Status, score and detail of every item, ready for JSON: what the grader reads."""
+        found = {}
+        for item in self.items.values():
+            v = self.verdicts.get(item.id) or Verdict(item.id, "unanswered", 0.0, item.points)
+            found[item.id] = {
+                "letter": item.letter,
+                "status": v.status,
+                "score": v.score,
+                "max": item.points,
+                "misconception": v.misconception,
+                "choice": self.predictions.get(item.id, {}).get("choice", ""),
+                "detail": "; ".join(x.says for x in v.lines if not x.ok),
+                "version": item.version,
+            }
+        return found
+
+    def guesses(self) -> list[tuple[str, float | None, bool]]:
+        """Predictions whose experiment was checked: (item, sure, right?)."""
+        tried = {
+            i.after
+            for i in self.items.values()
+            if isinstance(i, Experiment)
+            and i.id in self.verdicts
+            and self.verdicts[i.id].status in ("passed", "partial", "wrong")
+        }
+        return [
+            (name, kept["sure"], kept["choice"] == item.key)
+            for name, kept in self.predictions.items()
+            if name in tried and isinstance(item := self.items[name], Prediction)
+        ]
+
+    def summary(self) -> "Summary":
+        """Points per question, and how well your sureness matched what happened."""
+        return Summary(self)
+
+    # -- keeping -----------------------------------------------------------------------------
+
+    def save(self, path: str | Path | None = None) -> str:
+        """Write answers and predictions to ``<lab>_answers.json`` (or ``path``)."""
+        file = Path(path or f"{self.name}_answers.json")
+        if not self.answers:
+            return "There is nothing to save yet."
+        note = ""
+        if file.exists():
+            old, told = progress.read(file, self.name)
+            note = "" if old is not None else f" {told}"
+        kept = {"answers": self.answers, "predictions": self.predictions}
+        progress.write(file, progress.empty(self.name) | kept)
+        return f"Saved {len(self.answers)} answers to {file.name}.{note}"
+
+    def load(self, path: str | Path | None = None) -> str:
+        """Read them back. A file that cannot be read is set aside and named."""
+        data, told = progress.read(Path(path or f"{self.name}_answers.json"), self.name)
+        for name, kept in (data or {}).get("answers", {}).items():
+            if name in self.items:
+                self.answers.setdefault(name, kept)
+        for name, kept in (data or {}).get("predictions", {}).items():
+            item = self.items.get(name)
+            if isinstance(item, Prediction) and kept["choice"] in item.options:
+                self.predictions.setdefault(name, kept)
+        return told
+
+
+class Summary:
+    """What `Lab.summary` shows: text first, the same in HTML with the plot."""
+
+    def __init__(self, lab: Lab) -> None:
+        report, self._guesses = lab.report(), lab.guesses()
+        self._rows = [(lab.title, "", "")]
+        for q in lab.questions:
+            got = [report[i.id] for i in q.items]
+            waiting = sum(r["status"] == "recorded" for r in got)
+            note = f"{waiting} waiting for marking by hand" if waiting else ""
+            points = f"{sum(r['score'] for r in got):g} of {sum(r['max'] for r in got):g}"
+            self._rows.append((f"{q.id.upper()} {q.title}", points, note))
+        auto = sum(r["score"] for r in report.values())
+        self._rows.append(
+            ("Total", f"{auto:g} of {sum(i.points for i in lab.items.values()):g}", "")
+        )
+
+    @property
+    def _told(self) -> list[str]:
+        if not self._guesses:
+            return ["Predictions: none tested yet."]
+        right, n = sum(r for _, _, r in self._guesses), len(self._guesses)
+        lines = [f"Predictions: {right} of {n} right."]
+        sure = [(s, r) for _, s, r in self._guesses if s is not None]
+        for s, share, k in calibration.table(sure):
+            lines.append(f"  when {s:.0f} % sure: {100 * share:.0f} % right ({k})")
+        if sure:
+            lines.append(f"  Brier score {calibration.brier(sure):.3f} (0 perfect, 0.25 a coin)")
+        return lines
+
+    def __repr__(self) -> str:
+        width = max(len(a) for a, _, _ in self._rows[1:])
+        rows = [f"{a:<{width}}  {b}  {c}".rstrip() for a, b, c in self._rows]
+        return "\n".join(rows + self._told)
+
+    def _repr_html_(self) -> str:
+        rows = "".join(
+            f'<tr><th scope="row">{escape(a)}</th><td>{escape(b)}</td><td>{escape(c)}</td></tr>'
+            for a, b, c in self._rows[1:]
+        )
+        told = "".join(f"<p>{escape(x)}</p>" for x in self._told)
+        sure = [(s, r) for _, s, r in self._guesses if s is not None]
+        return (
+            f'<div role="status" class="pfkit-summary"><table><caption>{escape(self._rows[0][0])}'
+            f"</caption>{rows}</table>{told}{calibration.svg(sure) if sure else ''}</div>"
+        )
+
+
+def _source(answer: Any, limit: int = 20_000) -> str:
+    """The text of an answer: a function's source if Python can find it, else its repr."""
+
+    def find() -> str:
+        if inspect.isfunction(answer):
+            return inspect.getsource(answer)
+        return repr(answer)
+
+    ran = guarded(find, seconds=2.0)
+    return (ran.value if isinstance(ran.value, str) else f"<{type(answer).__name__}>")[:limit]

@@ -1,0 +1,81 @@
+"""Answers and predictions in a small JSON file, the same for notebook, page and grader.
+
+    {"schema": 1, "lab": "lab3",
+     "answers": {"q2a": {"source": "...", "version": "1f0c..."}},
+     "predictions": {"q7a": {"choice": "b", "sure": 70.0, "version": "..."}}}
+
+``version`` is that of the question, so that an answer to an older question can be told apart.
+A file that cannot be read is renamed, never overwritten.
+"""
+
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+SCHEMA = 1
+BIGGEST = 5_000_000  # bytes; a lab's answers are some ten thousand
+
+
+def empty(lab: str) -> dict[str, Any]:
+    return {"schema": SCHEMA, "lab": lab, "answers": {}, "predictions": {}}
+
+
+def parse(text: str, lab: str) -> dict[str, Any]:
+    """Read stored progress; raises ValueError that says what is wrong. Content is data only."""
+    data = json.loads(text)
+    if not isinstance(data, dict) or data.get("schema") != SCHEMA:
+        found = data.get("schema") if isinstance(data, dict) else None
+        raise ValueError(f"its schema is {found!r}, and this version reads {SCHEMA}")
+    if data.get("lab") != lab:
+        raise ValueError(f"it belongs to {str(data.get('lab'))[:40]!r}, not to {lab!r}")
+    clean = empty(lab)
+    for item, kept in _entries(data, "answers"):
+        clean["answers"][item] = {k: str(kept.get(k, "")) for k in ("source", "version")}
+    for item, kept in _entries(data, "predictions"):
+        sure = kept.get("sure")
+        clean["predictions"][item] = {
+            "choice": str(kept.get("choice", "")),
+            "sure": float(sure) if isinstance(sure, int | float) else None,
+            "version": str(kept.get("version", "")),
+        }
+    return clean
+
+
+def _entries(data: dict[str, Any], part: str) -> list[tuple[str, dict[str, Any]]]:
+    found = data.get(part, {})
+    if not isinstance(found, dict) or not all(isinstance(x, dict) for x in found.values()):
+        raise ValueError(f"its part {part!r} is not a table of answers")
+    return list(found.items())
+
+
+def read(path: Path, lab: str) -> tuple[dict[str, Any] | None, str]:
+    """The stored progress, or None, with a sentence. Sets a damaged file aside."""
+    if not path.exists():
+        return None, f"There is no {path.name} yet."
+    try:
+        if path.stat().st_size > BIGGEST:
+            raise ValueError(f"it has more than {BIGGEST} bytes")
+        data = parse(path.read_text(encoding="utf-8"), lab)
+    except (ValueError, RecursionError) as error:  # includes bad JSON and bad UTF-8
+        aside = set_aside(path)
+        reason = " ".join(str(error).split())[:160]
+        return None, f"I could not read {path.name} ({reason}). I kept it as {aside.name}."
+    return data, f"Loaded {len(data['answers'])} answers from {path.name}."
+
+
+def set_aside(path: Path) -> Path:
+    """Rename a file that we cannot use to the first free ``name.damaged-N``."""
+    n = 1
+    while (aside := path.with_name(f"{path.name}.damaged-{n}")).exists():
+        n += 1
+    os.replace(path, aside)
+    return aside
+
+
+def write(path: Path, data: dict[str, Any]) -> None:
+    """Write in one step, so that a crash leaves the old file or the new one."""
+    beside = path.with_name(path.name + ".part")
+    text = json.dumps(data, indent=1, sort_keys=True, ensure_ascii=False)
+    beside.write_text(text + "\n", encoding="utf-8")
+    os.replace(beside, path)

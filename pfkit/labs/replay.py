@@ -1,0 +1,72 @@
+"""How often would a right experiment fail? Replay the decision and count.
+
+An `Experiment` declares a false-fail probability. `replay` measures it: it makes a pool of
+independent runs once, then repeats the check's decision on draws from that pool.
+"""
+
+import math
+from typing import Any, NamedTuple
+
+import numpy as np
+
+from pfkit.labs.items import Experiment
+
+
+class Rate(NamedTuple):
+    """``fails`` of ``decisions``, and a one-sided 95 % upper bound on the probability."""
+
+    fails: int
+    decisions: int
+    bound: float
+    misconceptions: dict[str, int]
+
+    @property
+    def share(self) -> float:
+        return self.fails / self.decisions
+
+
+def upper_bound(fails: int, n: int, alpha: float = 0.05) -> float:
+    """Clopper-Pearson: the probability at which so few fails have probability ``alpha``."""
+    low, high = fails / n, 1.0
+    for _ in range(60):
+        mid = (low + high) / 2
+        logs = [
+            math.lgamma(n + 1) - math.lgamma(k + 1) - math.lgamma(n - k + 1)
+            + k * math.log(mid) + (n - k) * math.log1p(-mid)
+            for k in range(fails + 1)
+        ] if 0 < mid < 1 else [0.0]  # fmt: skip
+        low, high = (mid, high) if sum(map(math.exp, logs)) > alpha else (low, mid)
+    return high
+
+
+def replay(
+    item: Experiment, answer: Any, decisions: int = 3_000, pool: int = 3_000, seed: int = 1
+) -> Rate:
+    """Repeat a check of ``answer`` many times.
+
+    Parameters
+    ----------
+    item : Experiment
+    answer : callable
+        The reference, or a mutant.
+    decisions : int
+        How many checks to imitate.
+    pool : int
+        How many independent runs to make; each decision draws ``item.runs`` of them without
+        replacement, so the pool should be several times larger.
+    seed : int
+        Differs from the seed of the check itself.
+    """
+    rng = np.random.default_rng(seed)
+    chunks = [
+        item.outcomes(answer, item.runs, seed=seed + 1 + k) for k in range(-(-pool // item.runs))
+    ]
+    outcomes = np.concatenate(chunks)
+    fails, names = 0, dict[str, int]()
+    for _ in range(decisions):
+        judged = item.decide(outcomes[rng.choice(len(outcomes), item.runs, replace=False)])
+        if judged.fraction < 1:
+            fails += 1
+            name = judged.misconception.name if judged.misconception else ""
+            names[name] = names.get(name, 0) + 1
+    return Rate(fails, decisions, upper_bound(fails, decisions), names)

@@ -1,0 +1,312 @@
+"""The engine survives every answer, says one thing at a time, and loses nothing."""
+
+import json
+import sys
+import time
+
+import numpy as np
+import pytest
+
+from pfkit.labs import (
+    Choice,
+    Code,
+    Experiment,
+    Lab,
+    LabError,
+    Misconception,
+    Numeric,
+    Prediction,
+    Property,
+    Question,
+    Text,
+    controls,
+    replay,
+)
+from pfkit.labs.items import is_unanswered
+
+HINTS = ("first", "second", "third")
+
+
+def normalise(w):
+    return w / w.sum()
+
+
+def by_max(w):
+    return w / w.max()
+
+
+def make_lab() -> Lab:
+    numeric = Numeric(
+        id="n", title="ESS", key=2.667, tol=0.005, hints=HINTS,
+        misconceptions=(Misconception("inverse", "forgets to invert", ("i1", "i2", "i3"), 0.375),),
+    )  # fmt: skip
+    code = Code(
+        id="c",
+        title="normalise",
+        points=2.0,
+        reference=normalise,
+        hints=HINTS,
+        properties=(
+            Property("sums to one", lambda f: abs(f(np.ones(4)).sum() - 1) < 1e-9),
+            Property("keeps the shape", lambda f: f(np.ones(4)).shape == (4,)),
+        ),
+        fingerprint=lambda f: f(np.array([1.0, 2.0, 5.0])),
+        misconceptions=(
+            Misconception("by-max", "divides by the largest", ("m1", "m2", "m3"), by_max),
+        ),
+    )
+    choice = Choice(
+        id="m", title="particle", key="b",
+        options={"a": "a measurement", "b": "a hypothesis"},
+        feedback={"a": "Measurements score particles.", "b": "Yes."},
+    )  # fmt: skip
+    guess = Prediction(id="p", title="sign", key="a", options={"a": "zero", "b": "one"})
+    coin = Experiment(
+        id="x", title="mean", after="p", runs=100, claim="mean is zero", test="|mean| < 5 SE",
+        measure=lambda f, rng, runs: [f(rng) for _ in range(runs)], hints=HINTS,
+        properties=(Property("near 0", lambda x: abs(x.mean()) < 5 / np.sqrt(len(x))),),
+        reference=lambda rng: rng.normal(), false_fail=1e-4, margin="5 SE",
+        misconceptions=(
+            Misconception("biased", "is biased", ("b1", "b2", "b3"),
+                          lambda rng: rng.normal() + 2, lambda x: x.mean() > 1),
+        ),
+    )  # fmt: skip
+    text = Text(id="r", title="why", rubric=("names copies",), model="Because all are copies.")
+    return Lab("demo", "Demo", [Question("1", "One", (numeric, code, choice, guess, coin, text))])
+
+
+@pytest.fixture
+def lab():
+    return make_lab()
+
+
+def endless(w):
+    return endless(w)
+
+
+def loud(w):
+    print("x" * 1_000_000)
+    return w / w.sum()
+
+
+def leaves(w):
+    sys.exit(3)
+
+
+def interrupts(w):
+    raise KeyboardInterrupt
+
+
+class Nasty:
+    def __eq__(self, other):
+        raise RuntimeError("no comparing")
+
+    __hash__ = None
+
+    def __repr__(self):
+        raise RuntimeError("no printing")
+
+    def __array__(self, *_, **__):
+        raise RuntimeError("no array")
+
+    def __getattr__(self, name):
+        raise RuntimeError("no attributes")
+
+
+class BadMessage(Exception):
+    def __str__(self):
+        raise RuntimeError("no words")
+
+
+def unprintable_error(w):
+    raise BadMessage
+
+
+ODD = [
+    None, ..., 0, "", "text", b"bytes", float("nan"), float("inf"), 1j, [], {}, (), object(), int,
+    (x for x in range(3)), np.array([1, "a", None], dtype=object), np.zeros((0, 3)), np.ma.masked,
+    lambda: 1, lambda w: "text", lambda w: None, lambda w: (i for i in w), lambda w: w * np.nan,
+    lambda w: np.array([object()] * 4), lambda w: 1 / 0, endless, loud, leaves, interrupts,
+    unprintable_error, Nasty(), lambda w: Nasty(), "a" * 1_000_000, [[1], [2, 3]], 10**400,
+    ("a", "b", 3),
+    ("a", "often"), ("a", 400), ["a", 50], True,
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("item", ["n", "c", "m", "p", "x", "r", "nowhere", 3, None])
+def test_check_never_raises(lab, item, capsys):
+    for odd in ODD:
+        verdict = lab.check(item, odd)
+        assert isinstance(str(verdict), str) and isinstance(verdict._repr_html_(), str)
+        assert len(str(verdict)) < 3_000
+        lab.use(item, odd)
+    assert len(capsys.readouterr().out) < 20_000
+    json.dumps(lab.report())
+
+
+def test_a_loop_without_end_is_stopped(lab, monkeypatch):
+    if not hasattr(__import__("signal"), "setitimer"):
+        pytest.skip("this platform has no alarm clock")
+    monkeypatch.setattr("pfkit.labs.lab.guarded.__defaults__", (0.3,))
+
+    def hangs(w):
+        while True:
+            try:
+                time.sleep(0.01)
+            except Exception:
+                pass
+
+    start = time.perf_counter()
+    verdict = lab.check("c", hangs)
+    assert verdict.status == "wrong" and "stopped after" in str(verdict)
+    assert time.perf_counter() - start < 5
+
+
+def test_message_first_then_properties_then_one_hint(lab):
+    text = str(lab.check("c", by_max)).splitlines()
+    assert text[0] == "c: partial 1/2"
+    assert text[1].strip() == "[no] sums to one" and text[2].strip() == "[ok] keeps the shape"
+    assert text[3] == "Your answer divides by the largest. Hint 1 of 3: m1" and len(text) == 4
+
+
+def test_the_ladder_has_three_rungs_per_misconception(lab):
+    rungs = [lab.check("c", by_max).hint[-2:] for _ in range(5)]
+    assert rungs == ["m1", "m2", "m3", "m3", "m3"]
+    assert lab.check("c", lambda w: w).hint == "Hint 1 of 3: first"
+
+
+def test_right_answers_pass_and_score(lab):
+    lab.predict("p", ("a", 80))
+    right = {i: item.solution() for i, item in lab.items.items()}
+    right["r"] = "The weights are equal, yet every particle is a copy of one."
+    statuses = [lab.check(i, a).status for i, a in right.items()]
+    assert statuses == ["passed"] * 3 + ["predicted", "passed", "recorded"]
+    assert "5 of 7" not in repr(lab.summary()) and "6 of 7" in repr(lab.summary())
+    assert "1 waiting for marking by hand" in repr(lab.summary())
+
+
+STUBS = [
+    "def f(w, rng):\n    ...",
+    "def f(w):\n    'Doc.'\n    ...",
+    "def f():\n    return ...",
+    "def f(a, b=2):\n    pass",
+    "f = ...",
+]
+
+
+@pytest.mark.parametrize("stub", STUBS)
+def test_stubs_count_as_unanswered(lab, stub):
+    space = {}
+    exec(stub, space)
+    assert is_unanswered(space["f"])
+    assert lab.check("c", space["f"]).status == "unanswered"
+    assert lab.use("c", space["f"]) is normalise
+
+
+def test_a_function_that_does_something_is_answered():
+    assert not is_unanswered(lambda: 1) and not is_unanswered(lambda w: w)
+
+
+def test_predictions_are_locked_and_come_first(lab):
+    coin = lab.items["x"].solution()
+    assert lab.check("x", coin).status == "locked"
+    assert lab.predict("p", ("b", 70)).status == "predicted"
+    assert "it stays (b)" in str(lab.predict("p", "a"))
+    assert lab.predictions["p"]["choice"] == "b"
+    assert lab.guesses() == []  # not told before the experiment
+    assert lab.check("x", coin).status == "passed"
+    assert lab.guesses() == [("p", 70.0, False)]
+    assert "0 of 1 right" in repr(lab.summary()) and "<svg" in lab.summary()._repr_html_()
+
+
+def test_strict_switch(lab, monkeypatch):
+    monkeypatch.setenv("PFKIT_LABS_STRICT", "1")
+    assert lab.check("n", 2.667).status == "passed"
+    for item, answer in [("n", 1.0), ("n", ...), ("nowhere", 1), ("x", lambda rng: 0.0)]:
+        with pytest.raises(LabError):
+            lab.check(item, answer)
+
+
+def test_status_is_announced_and_text_is_escaped(lab):
+    html = lab.check("m", "<script>alert(1)</script>")._repr_html_()
+    assert 'role="status"' in html and "<script>" not in html and "style=" not in html
+
+
+def test_progress_round_trip(lab, tmp_path):
+    file = tmp_path / "a.json"
+    assert "nothing" in lab.save(file) and not file.exists()
+    lab.predict("p", ("b", 70)), lab.check("n", 2.667), lab.check("c", normalise)
+    assert lab.save(file).startswith("Saved 3")
+    data = json.loads(file.read_text())
+    assert data["schema"] == 1 and data["lab"] == "demo"
+    assert data["answers"]["n"] == {"source": "2.667", "version": lab.items["n"].version}
+    assert "def normalise" in data["answers"]["c"]["source"]
+    other = make_lab()
+    assert other.load(file).startswith("Loaded 3")
+    assert other.predictions == lab.predictions and other.answers == lab.answers
+    assert "it stays (b)" in str(other.predict("p", "a"))
+
+
+DAMAGED = [
+    b"",
+    b"{",
+    b"[]",
+    b"null",
+    b"\xff\xfe\x00",
+    b'{"schema": 2, "lab": "demo"}',
+    b'{"schema": 1, "lab": "other"}',
+    b'{"schema": 1, "lab": "demo", "answers": [1]}',
+    b"[" * 100_000,
+]
+
+
+@pytest.mark.parametrize("bad", DAMAGED)
+def test_damaged_files_are_set_aside_and_said(lab, tmp_path, bad):
+    file = tmp_path / "a.json"
+    for n in (1, 2):
+        file.write_bytes(bad)
+        told = lab.load(file)
+        aside = tmp_path / f"a.json.damaged-{n}"
+        assert aside.name in told and aside.read_bytes() == bad and not file.exists()
+    lab.check("n", 2.667)
+    file.write_bytes(bad)
+    assert "damaged-3" in lab.save(file)
+    assert json.loads(file.read_text())["answers"]["n"]["source"] == "2.667"
+    assert make_lab().load(tmp_path / "none.json") == "There is no none.json yet."
+
+
+def test_item_versions_follow_the_question():
+    one, two = make_lab(), make_lab()
+    assert [i.version for i in one.items.values()] == [i.version for i in two.items.values()]
+
+
+def test_declarations_are_checked():
+    item = make_lab().items["n"]
+    with pytest.raises(ValueError, match="two items"):
+        Lab("l", "L", [Question("1", "One", (item, item))])
+    with pytest.raises(ValueError, match="no such prediction"):
+        Lab("l", "L", [Question("1", "One", (make_lab().items["x"],))])
+
+
+def test_replay_bounds_the_false_fail_rate(lab):
+    item = lab.items["x"]
+    rate = replay(item, item.reference, decisions=3_000, pool=3_000)
+    assert rate.fails == 0 and rate.bound == pytest.approx(1 - 0.05 ** (1 / 3000), rel=1e-6)
+    wrong = replay(item, item.misconceptions[0].example, decisions=200, pool=1_000)
+    assert wrong.share == 1 and wrong.misconceptions == {"biased": 200}
+
+
+def test_controls_drive_the_lab(lab, monkeypatch):
+    widgets = pytest.importorskip("ipywidgets")
+    assert controls.offer(lab, lab.items["m"]) is False  # no front end here
+    box = controls.build(lab, lab.items["m"], widgets)
+    radio, button, told = box.children
+    button.click()
+    assert "no answer yet" in told.value
+    radio.value = "b"
+    button.click()
+    assert "passed" in told.value and lab.verdicts["m"].status == "passed"
+    radio, sure, button, told = controls.build(lab, lab.items["p"], widgets).children
+    radio.value, sure.value = "a", 85
+    button.click()
+    assert lab.predictions["p"]["choice"] == "a" and lab.predictions["p"]["sure"] == 85
