@@ -1,0 +1,59 @@
+"""Every command of the project; `make book` is short for `python tools/run.py book`, and so on.
+
+    book        install what is needed, build the book into _build/html, say how to open it
+    serve       build, then serve the book on this machine:  serve [--port 8000]
+    test        run every check in order:  test [--keep-going] [--only STAGE ...] [--list]
+    lint        style and format of the code (ruff); lint --fix mends what it can
+    notebooks   execute the notebooks whose code, package or data changed:  notebooks [FILE ...]
+    clean       remove what was built; clean --all also removes the environment and the caches
+
+The first call makes the environment .venv; nothing outside this folder is touched.
+"""
+
+from __future__ import annotations
+
+import os
+import shutil
+import subprocess
+import sys
+
+from environment import PYTHON, ROOT, Stop, prepare, require_python, say
+
+NEEDS = {"book": "book", "serve": "book", "test": "all", "lint": "all", "notebooks": "all"}
+
+
+def clean(*flags: str) -> None:
+    """Remove built files; with --all the environment and the caches too."""
+    names = ["_build", ".pytest_cache", ".ruff_cache", ".mypy_cache", ".hypothesis"]
+    names += [".venv", ".cache"] if "--all" in flags else []
+    for name in names:
+        if (ROOT / name).exists():
+            say("removing " + name)
+            shutil.rmtree(ROOT / name)
+
+
+def main(arguments: list[str]) -> int:
+    """Prepare the environment, then hand the command to the tool that does it."""
+    command, rest = (arguments or ["help"])[0], arguments[1:]
+    if command == "clean":
+        clean(*rest)
+        return 0
+    if command not in NEEDS:
+        print(__doc__)
+        return 0 if command in ("help", "-h", "--help") else 2
+    prepare(NEEDS[command])
+    tool = {"lint": "checks", "test": "checks", "notebooks": "notebooks"}.get(command, "book")
+    script = [str(PYTHON), str(ROOT / "tools" / (tool + ".py"))]
+    extra = [] if command == "notebooks" else [command]
+    path = str(PYTHON.parent) + os.pathsep + os.environ.get("PATH", "")
+    return subprocess.call(script + extra + rest, cwd=str(ROOT), env={**os.environ, "PATH": path})
+
+
+if __name__ == "__main__":
+    try:
+        require_python()
+        sys.exit(main(sys.argv[1:]))
+    except Stop as reason:
+        sys.exit("[course] stopped: %s" % reason)
+    except KeyboardInterrupt:
+        sys.exit("[course] interrupted")
