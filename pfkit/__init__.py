@@ -51,8 +51,20 @@ from pfkit.estimators import covariance, mean_pose
 
 # L3: filters
 from pfkit.filters import History, Info, predict, resample, run, select, step, update
+from pfkit.histogram import door_likelihood, predict_1d, shift_kernel, update_1d
 
 # L4: simulation, data, judgement
+from pfkit.diagnostics import (
+    dead_reckoning,
+    heading_rmse,
+    hypothesis_mass,
+    offspring_z,
+    pose_error,
+    position_error,
+    rmse,
+    settle_time,
+    trace,
+)
 
 # L5: studies
 
