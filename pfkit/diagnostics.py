@@ -1,0 +1,299 @@
+r"""How wrong is the answer, and when?
+
+A simulated robot knows its truth, and so does a filmed one. Then the error of a filter is a
+number, and a good habit is to say *which* number. Position and heading have different units,
+so they get one figure each. A heading error is an angle and is wrapped before it is squared:
+359 degrees off is 1 degree off.
+
+The usual summary of a drive is the root of the mean squared position error,
+
+.. math:: \mathrm{RMSE} = \sqrt{\tfrac1T \sum_t (\hat x_t - x_t)^2 + (\hat y_t - y_t)^2} .
+
+It says nothing about when the error was large. `settle_time` does: the moment after which it
+stays small. And it says nothing without a rival. The cheapest one is `dead_reckoning`: follow
+the odometer, ignore every measurement. A filter that does not beat it does not work.
+
+One run is an anecdote. `pfkit.comparison` puts intervals on many, `pfkit.consistency` asks
+whether the filter *knows* how wrong it is, `pfkit.genealogy` who descends from whom.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pfkit.errors import (
+    DataError,
+    ParameterError,
+    ShapeError,
+    require_components,
+    require_count,
+    require_finite,
+    require_positive,
+)
+from pfkit.filters import History
+from pfkit.geometry import wrap
+from pfkit.log import Log
+from pfkit.motion import MotionModel
+from pfkit.particles import Particles
+from pfkit.resampling import Resampler
+
+Array = NDArray[np.float64]
+
+
+def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
+    r"""Estimate minus truth; the third component, a heading, is wrapped.
+
+    .. math:: e = (\hat x - x,\; \hat y - y,\; \mathrm{wrap}(\hat\theta - \theta))
+
+    Parameters
+    ----------
+    estimate : array_like (D, ...), metres and radians, e.g. (3, T) or (3, T, B)
+    truth : array_like (D, ...), with the same leading axes; one truth (3, T) serves a batch
+
+    Returns
+    -------
+    array (D, ...), of the estimate's shape
+
+    Raises
+    ------
+    ShapeError
+        If the shapes do not belong together.
+    """
+    estimate, truth = np.asarray(estimate, dtype=float), np.asarray(truth, dtype=float)
+    if estimate.ndim == 0 or estimate.shape[0] < 2:
+        raise ShapeError(
+            f"estimate must have its components first, shape (D, ...), got {estimate.shape}"
+        )
+    if truth.ndim == estimate.ndim + 1 and truth.shape[-1] == 1:
+        truth = truth[..., 0]  # the truths of a batched log are (D, T, B, 1)
+    if truth.shape != estimate.shape[: truth.ndim]:
+        raise ShapeError(f"truth {truth.shape} does not match the estimate {estimate.shape}")
+    error = estimate - truth.reshape(truth.shape + (1,) * (estimate.ndim - truth.ndim))
+    if error.shape[0] >= 3:
+        error[2] = wrap(error[2])
+    return error
+
+
+def position_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
+    r"""Distance between the estimated and the true position.
+
+    .. math:: \sqrt{(\hat x - x)^2 + (\hat y - y)^2}
+
+    Parameters
+    ----------
+    estimate, truth : array_like (D, ...), as in `pose_error`
+
+    Returns
+    -------
+    array (...), metres
+    """
+    return np.hypot(*pose_error(estimate, truth)[:2])
+
+
+def rmse(estimate: ArrayLike, truth: ArrayLike) -> Array | np.float64:
+    r"""Root mean square of the position error over the steps of a drive.
+
+    .. math:: \sqrt{\tfrac1T \sum_t (\hat x_t - x_t)^2 + (\hat y_t - y_t)^2}
+
+    Parameters
+    ----------
+    estimate, truth : array_like (D, T) or (D, T, B), as in `pose_error`
+
+    Returns
+    -------
+    float, or (B,) with one number per run, metres
+
+    Raises
+    ------
+    ShapeError, DataError
+        If the shapes do not match, there is no step, or a number is not finite.
+    """
+    return _root_mean_square(position_error(estimate, truth))
+
+
+def heading_rmse(estimate: ArrayLike, truth: ArrayLike) -> Array | np.float64:
+    r"""Root mean square of the wrapped heading error over the steps of a drive.
+
+    .. math:: \sqrt{\tfrac1T \sum_t \mathrm{wrap}(\hat\theta_t - \theta_t)^2}
+
+    Parameters
+    ----------
+    estimate, truth : array_like (3, T) or (3, T, B), as in `pose_error`
+
+    Returns
+    -------
+    float, or (B,) with one number per run, radians
+
+    Raises
+    ------
+    ShapeError, DataError
+        As `rmse`.
+    """
+    return _root_mean_square(pose_error(require_components("estimate", estimate, 3), truth)[2])
+
+
+def _root_mean_square(error: Array) -> Array | np.float64:
+    if error.ndim == 0 or error.shape[0] == 0:
+        raise ShapeError(f"need (D, T) with at least one step T, got errors of {error.shape}")
+    require_finite("the error", error, DataError)
+    return np.sqrt(np.mean(error * error, axis=0))
+
+
+def settle_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.float64:
+    """The first time after which the error stays below a limit, to the end of the log.
+
+    Parameters
+    ----------
+    t : array_like (T,), seconds
+    error : array_like (T,) or (T, B), e.g. of `position_error`, metres
+    limit : float, > 0, metres
+
+    Returns
+    -------
+    float or (B,), seconds; inf if the error does not end below the limit
+    """
+    t, error = require_finite("t", t), require_finite("error", error)
+    require_positive("limit", limit)
+    if t.ndim != 1 or t.size == 0 or error.shape[:1] != t.shape:
+        raise ShapeError(f"error needs one row per time, (T,) or (T, B): {error.shape}, {t.shape}")
+    late = np.cumprod((error < limit)[::-1], axis=0).sum(axis=0)  # steps of the good ending
+    return np.append(t, np.inf)[len(t) - late]
+
+
+def dead_reckoning(log: Log, motion: MotionModel, start: ArrayLike | None = None) -> Array:
+    r"""Follow the controls without noise and without measurements.
+
+    .. math:: \hat x_t = E[x_t \mid u_t, \hat x_{t-1}]
+
+    Parameters
+    ----------
+    log : Log
+    motion : MotionModel
+    start : array_like (D,) or (D, B, 1), optional
+        The pose before the first control; the log's own start if left out.
+
+    Returns
+    -------
+    array (D, T) or (D, T, B, 1), the path it believes it drove
+
+    Raises
+    ------
+    ParameterError
+        If neither the argument nor the log says where the robot started.
+    """
+    if start is None:
+        start = log.start
+    if start is None:
+        raise ParameterError("dead reckoning needs a start pose (3,), got None; pass start=")
+    pose = require_finite("start", start)
+    path = []
+    for u in np.moveaxis(log.u, 1, 0):
+        pose = motion.mean(pose, u)
+        path.append(pose)
+    return np.stack(path, axis=1) if path else np.empty((len(pose), 0))
+
+
+def trace(history: History) -> NDArray[np.void]:
+    """One row per step: what happened, ready for a table, a plot or a CSV file.
+
+    Parameters
+    ----------
+    history : History of one run
+
+    Returns
+    -------
+    structured array (T,) with the fields step, t (s), ess, log_evidence, resampled,
+    position_sd (m) and error (m; NaN if the truth is not known)
+
+    Raises
+    ------
+    ShapeError
+        If the history holds a batch.
+    """
+    if history.ess.ndim != 1:
+        raise ShapeError(f"trace needs one run, got a batch of {history.ess.shape[1]}; pick one")
+    T = len(history.t)
+    columns = {
+        "step": np.arange(T, dtype=np.int64),
+        "t": history.t,
+        "ess": history.ess,
+        "log_evidence": history.log_evidence,
+        "resampled": history.resampled,
+        "position_sd": history.position_sd,
+        "error": np.full(T, np.nan)
+        if history.truth is None
+        else position_error(history.estimate, history.truth),
+    }
+    table = np.empty(T, dtype=[(name, column.dtype) for name, column in columns.items()])
+    for name, column in columns.items():
+        table[name] = column
+    return table
+
+
+def hypothesis_mass(bel: Particles, poses: ArrayLike, radius: float, angle: float = np.pi) -> Array:
+    r"""How much of the belief lies near each of several candidate poses.
+
+    .. math:: \mu_h = \sum_m w_m\, [\,\|x_m - x_h\| < r
+                      \ \text{and}\ |\mathrm{wrap}(\theta_m - \theta_h)| \le a\,]
+
+    A hypothesis is *alive* while its mass is above some floor, say 1 %. In a symmetric world
+    the candidates are the truth and its mirror images under `worlds.symmetries`.
+
+    Parameters
+    ----------
+    bel : Particles with state (3, M) or (3, B, M)
+    poses : array_like (3, H), or (3, H, B) with different candidates per run
+    radius : float, > 0, metres
+    angle : float, > 0, radians
+        Largest heading difference; pi ignores the heading.
+
+    Returns
+    -------
+    array (H,) or (H, B), between 0 and 1
+    """
+    poses = require_finite("poses", require_components("poses", poses, 3))
+    require_positive("radius", radius)
+    require_positive("angle", angle)
+    if poses.ndim not in (2, bel.state.ndim):
+        raise ShapeError(f"poses must be (3, H), or (3, H, B) for a batch, got {poses.shape}")
+    missing = bel.state.ndim - poses.ndim + 1
+    candidates = poses.reshape(poses.shape + (1,) * missing)
+    dx, dy, turn = bel.state[:3, None] - candidates
+    near = (dx * dx + dy * dy < radius * radius) & (np.abs(wrap(turn)) <= angle)
+    return np.sum(near * bel.w, axis=-1)
+
+
+def offspring_z(
+    scheme: Resampler,
+    w: ArrayLike,
+    rng: np.random.Generator,
+    draws: int = 2000,
+    n: int | None = None,
+) -> Array:
+    r"""Is a resampling scheme unbiased? One z-score per particle.
+
+    .. math:: z_m = \frac{\bar N_m - n w_m}{s_m / \sqrt{draws}}
+
+    An unbiased scheme gives standard normal scores; a biased one grows with sqrt(draws).
+
+    Parameters
+    ----------
+    scheme : Resampler
+    w : array_like (M,), non-negative; need not sum to one
+    rng : numpy.random.Generator
+    draws : int, how often the scheme is called
+    n : int, optional, copies per call; M if left out
+
+    Returns
+    -------
+    array (M,). A count that never varies has z = 0 if it is right and infinity if it is not.
+    """
+    w = require_finite("w", w)
+    draws, n = require_count("draws", draws, 2), w.size if n is None else require_count("n", n)
+    counts = np.stack([np.bincount(scheme(w, rng, n), minlength=w.size) for _ in range(draws)])
+    excess = counts.mean(axis=0) - n * w / w.sum()
+    excess[np.abs(excess) < 1e-9 * n] = 0.0
+    error = counts.std(axis=0, ddof=1) / np.sqrt(draws)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        return np.where(excess == 0, 0.0, excess / error)

@@ -1,0 +1,168 @@
+"""Errors, dead reckoning and counts, against hand computation and loop twins."""
+
+import numpy as np
+import pytest
+
+import pfkit as pf
+from pfkit.log import Log
+
+
+def rng(seed=0):
+    return np.random.default_rng(seed)
+
+
+def circle_log(T=40, v=1.0, omega=0.2, dt=0.1):
+    u = np.tile(np.array([[v], [omega], [dt]]), T)
+    t = dt * np.arange(1, T + 1)
+    R = v / omega
+    truth = np.stack((R * np.sin(omega * t), R - R * np.cos(omega * t), omega * t))
+    return Log(t, u, [np.empty((3, 0))] * T, truth, np.zeros(3))
+
+
+def test_pose_error_wraps_the_heading():
+    error = pf.pose_error([1.0, 2.0, np.pi - 0.1], [0.0, 4.0, -np.pi + 0.1])
+    np.testing.assert_allclose(error, [1.0, -2.0, -0.2], atol=1e-12)
+    assert pf.position_error([4.0, 6.0, 0.0], [1.0, 2.0, 0.0]) == pytest.approx(5.0)
+
+
+def test_two_component_states_have_no_heading():
+    np.testing.assert_allclose(pf.pose_error([7.0, 7.0], [0.0, 0.0]), [7.0, 7.0])
+
+
+def test_rmse_matches_a_loop_and_a_truth_serves_a_whole_batch():
+    estimate, truth = rng().normal(size=(3, 20, 4)), rng(1).normal(size=(3, 20))
+    by_hand = [
+        np.sqrt(
+            sum(
+                (estimate[0, t, b] - truth[0, t]) ** 2 + (estimate[1, t, b] - truth[1, t]) ** 2
+                for t in range(20)
+            )
+            / 20
+        )
+        for b in range(4)
+    ]
+    np.testing.assert_allclose(pf.rmse(estimate, truth), by_hand)
+    np.testing.assert_allclose(pf.rmse(estimate[..., 0], truth), by_hand[0])
+    batched = np.repeat(truth[..., None, None], 4, axis=2)  # (3, T, B, 1), as a log has it
+    np.testing.assert_allclose(pf.rmse(estimate, batched), by_hand)
+
+
+def test_rmse_does_not_change_when_the_world_moves():
+    estimate, truth = rng().normal(size=(3, 30)), rng(1).normal(size=(3, 30))
+    g = np.array([3.0, -2.0, 2.5])[:, None]
+    moved = pf.compose(g, estimate), pf.compose(g, truth)
+    assert pf.rmse(*moved) == pytest.approx(pf.rmse(estimate, truth))
+    assert pf.heading_rmse(*moved) == pytest.approx(pf.heading_rmse(estimate, truth))
+
+
+def test_heading_rmse_of_a_whole_turn_is_zero():
+    truth = rng().normal(size=(3, 10))
+    assert pf.heading_rmse(truth + np.array([[5.0], [5.0], [2 * np.pi]]), truth) < 1e-12
+
+
+@pytest.mark.parametrize(
+    ("estimate", "truth", "error"),
+    [
+        (np.zeros((3, 5)), np.zeros((3, 4)), pf.ShapeError),
+        (np.zeros((3, 0)), np.zeros((3, 0)), pf.ShapeError),
+        (np.zeros(3), np.zeros(3), pf.ShapeError),
+        (np.zeros((1, 5)), np.zeros((1, 5)), pf.ShapeError),
+        (np.full((3, 5), np.nan), np.zeros((3, 5)), pf.DataError),
+    ],
+)
+def test_bad_errors_are_named(estimate, truth, error):
+    with pytest.raises(error):
+        pf.rmse(estimate, truth)
+
+
+def test_settle_time_is_the_start_of_the_good_ending():
+    t = np.arange(1.0, 7.0)
+    error = np.array([9, 0.1, 9, 0.1, 0.2, 0.3])
+    assert pf.settle_time(t, error, 0.5) == 4.0
+    assert pf.settle_time(t, error, 0.25) == np.inf
+    assert pf.settle_time(t, np.zeros(6), 0.5) == 1.0
+    both = pf.settle_time(t, np.stack((error, np.zeros(6)), axis=1), 0.5)
+    np.testing.assert_array_equal(both, [4.0, 1.0])
+
+
+def test_dead_reckoning_follows_the_circle_exactly():
+    log = circle_log()
+    path = pf.dead_reckoning(log, pf.VelocityMotion())
+    assert pf.rmse(path, log.truth) < 1e-12
+
+
+def test_dead_reckoning_batches_and_moves_with_its_start():
+    log = circle_log()
+    g = np.array([4.0, -1.0, 1.0])
+    moved = pf.dead_reckoning(log, pf.VelocityMotion(), start=g)
+    np.testing.assert_allclose(moved, pf.compose(g[:, None], log.truth), atol=1e-12)
+    starts = np.stack((np.zeros(3), g), axis=1)[..., None]  # (3, B, 1)
+    both = pf.dead_reckoning(log, pf.VelocityMotion(), start=starts)
+    assert both.shape == (3, 40, 2, 1)
+    np.testing.assert_allclose(both[:, :, 1, 0], moved, atol=1e-12)
+
+
+def test_dead_reckoning_without_a_start_is_refused():
+    log = Log(np.ones(1), np.zeros((3, 1)), [np.empty((3, 0))])
+    with pytest.raises(pf.ParameterError, match="start"):
+        pf.dead_reckoning(log, pf.VelocityMotion())
+
+
+def test_trace_repeats_the_history():
+    log = circle_log(10)
+    bel = pf.gaussian_prior(50, np.zeros(3), np.full(3, 0.1), rng())
+    world = pf.LandmarkMap([[5.0], [5.0]])
+    history = pf.run(log, bel, pf.VelocityMotion(), pf.RangeBearing(world, 0.1, 0.1), rng())
+    table = pf.trace(history)
+    np.testing.assert_array_equal(table["ess"], history.ess)
+    np.testing.assert_allclose(
+        np.sqrt(np.mean(table["error"] ** 2)), pf.rmse(history.estimate, history.truth)
+    )
+
+
+def test_hypothesis_mass_counts_weight_near_each_candidate():
+    bel = pf.from_weights(
+        [[0.0, 0.1, 5.0, 9.0], [0.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 0.0]], [0.4, 0.3, 0.2, 0.1]
+    )
+    poses = [[0.0, 5.0], [0.0, 0.0], [0.0, 0.0]]
+    np.testing.assert_allclose(pf.hypothesis_mass(bel, poses, 0.5), [0.7, 0.2])
+    np.testing.assert_allclose(pf.hypothesis_mass(bel, poses, 0.5, angle=1.0), [0.4, 0.2])
+
+
+def test_hypothesis_mass_of_a_batch_is_that_of_its_runs():
+    state = rng().uniform(-2, 2, size=(3, 3, 200))
+    bel = pf.from_weights(state, rng(1).random((3, 200)))
+    poses = rng(2).uniform(-2, 2, size=(3, 5, 3))
+    together = pf.hypothesis_mass(bel, poses, 1.0, angle=1.0)
+    for b in range(3):
+        one = pf.from_weights(state[:, b], bel.w[b])
+        np.testing.assert_allclose(
+            together[:, b], pf.hypothesis_mass(one, poses[..., b], 1.0, angle=1.0)
+        )
+
+
+@pytest.mark.parametrize("scheme", pf.SCHEMES.values(), ids=pf.SCHEMES.keys())
+def test_offspring_scores_of_an_honest_scheme_are_standard_normal(scheme):
+    w = np.array([0.4, 0.25, 0.15, 0.12, 0.08])
+    z = pf.offspring_z(scheme, w, rng(3), draws=3000)
+    assert np.abs(z).max() < 4.5  # five scores: false alarm 3e-5
+
+
+def test_offspring_scores_expose_a_scheme_that_favours_the_first():
+    def biased(w, rng, n):
+        chosen = pf.multinomial(w, rng, n)
+        chosen[0] = 0
+        return chosen
+
+    assert pf.offspring_z(biased, np.full(10, 0.1), rng(), draws=3000)[0] > 20
+
+
+def test_a_count_that_never_varies_is_exact_or_infinitely_wrong():
+    w = np.full(4, 0.25)
+    np.testing.assert_array_equal(pf.offspring_z(pf.systematic, w, rng(), 10), 0)
+
+    def always_first(w, rng, n):
+        return np.zeros(n, dtype=np.int64)
+
+    z = pf.offspring_z(always_first, w, rng(), 10)
+    assert z[0] == np.inf and (z[1:] == -np.inf).all()
