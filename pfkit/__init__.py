@@ -39,14 +39,15 @@ from pfkit.motion import (
     odometry_control,
 )
 from pfkit.sensors import (
-    OutlierMixture,
-    Range,
-    RangeBearing,
+    Compass,
+    Position,
     Sensor,
     SensorModel,
     log_gaussian,
     log_student,
 )
+from pfkit.landmark_sensors import Bearing, Range, RangeBearing
+from pfkit.robust import Gate, OutlierMixture, Tempered
 from pfkit.estimators import covariance, mean_pose
 
 # L3: filters

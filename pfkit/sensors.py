@@ -26,7 +26,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any, ClassVar, Protocol
+from typing import ClassVar, Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -34,13 +34,12 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     DataError,
     ParameterError,
+    ShapeError,
     require_components,
     require_finite,
-    require_fraction,
     require_positive,
 )
 from pfkit.geometry import wrap
-from pfkit.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 
@@ -70,6 +69,17 @@ def log_student(error: ArrayLike, sigma: float, nu: float) -> Array:
     scaled = np.asarray(error) / sigma
     constant = math.lgamma((nu + 1) / 2) - math.lgamma(nu / 2) - 0.5 * math.log(math.pi * nu)
     return constant - math.log(sigma) - 0.5 * (nu + 1) * np.log1p(scaled * scaled / nu)
+
+
+def require_nu(nu: float) -> None:
+    if not nu > 0:
+        raise ParameterError(f"nu must be > 0 (inf for a Gaussian), got {nu}")
+
+
+def draw_errors(sigma: float, nu: float, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
+    """Errors of scale sigma: Gaussian, or Student t."""
+    draws = rng.standard_normal(shape) if math.isinf(nu) else rng.standard_t(nu, shape)
+    return sigma * draws
 
 
 class Sensor:
@@ -110,209 +120,118 @@ class Sensor:
         return total
 
 
-def _seen(world: LandmarkMap, ids: ArrayLike | None, pose: Array) -> tuple[Array, Array]:
-    """Vectors (2, K, ...) from poses to landmarks, and their ids (K, ...)."""
-    ids = world.ids if ids is None else np.asarray(ids)
-    column = (slice(None), slice(None), *(None,) * (pose.ndim - 1))
-    s = np.broadcast_to(ids.reshape(-1, *(1,) * (pose.ndim - 1)), (ids.size, *pose.shape[1:]))
-    return world.locate(ids)[column] - pose[:2, None], s
-
-
 @dataclass(frozen=True)
-class RangeBearing(Sensor):
-    r"""Distance and direction to landmarks of known identity: columns z_k = (r, phi, s).
+class Position(Sensor):
+    r"""A position fix, as from satellites or a camera on the ceiling: columns z_k = (x, y).
 
-    .. math:: \hat r = \sqrt{(m_x - x)^2 + (m_y - y)^2}, \qquad
-              \hat\phi = \mathrm{atan2}(m_y - y,\, m_x - x) - \theta
+    .. math:: p(z \mid x) = \frac{1}{2\pi\sqrt{|\Sigma|}}
+              \exp\big(-\tfrac12 \nu^T \Sigma^{-1} \nu\big), \qquad \nu = z - (x, y)
 
-    .. math:: p(z \mid x) = \mathcal N(r - \hat r;\, 0, \sigma_r^2)\;
-                            \mathcal N(\mathrm{wrap}(\phi - \hat\phi);\, 0, \sigma_\phi^2)
+    It reads the first two components of a state of any dimension.
 
     Parameters
     ----------
-    world : LandmarkMap
-    sigma_r : float, metres, > 0
-    sigma_phi : float, radians, > 0
-    nu : float
-        Degrees of freedom of a Student t with these scales; inf is the Gaussian above.
-    bias_phi : float, radians
-        Constant error of the bearing (a camera that is mounted askew): measured minus true.
+    sigma : float or array_like (2,), metres (or pixels), > 0
+        Standard deviations in x and y; or give
+    Sigma : array_like (2, 2), square metres (or pixels)
+        The full covariance, for errors that are correlated.
 
     Raises
     ------
-    ParameterError
-        If a sigma or nu is not positive.
+    ParameterError, ShapeError
+        If not exactly one of the two is given, or it is not a covariance.
 
     Notes
     -----
-    Source: Probabilistic Robotics, Table 6.4 (landmark_model_known_correspondence).
+    With Sigma = S S^T the error is whitened, e = S^-1 nu, and the exponent is -|e|^2 / 2.
     """
 
-    world: LandmarkMap
-    sigma_r: float
-    sigma_phi: float
-    nu: float = math.inf
-    bias_phi: float = 0.0
-    components: ClassVar[int] = 3
-
-    def __post_init__(self) -> None:
-        require_positive("sigma_r", self.sigma_r)
-        require_positive("sigma_phi", self.sigma_phi)
-        require_finite("bias_phi", self.bias_phi)
-        _require_nu(self.nu)
-
-    def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
-        """Noise-free measurement of landmarks (all if `ids` is left out): (3, K, ...)."""
-        pose = require_components("pose", pose, 3)
-        (dx, dy), s = _seen(self.world, ids, pose)
-        bearing = wrap(np.arctan2(dy, dx) - pose[2] + self.bias_phi)
-        return np.stack((np.hypot(dx, dy), bearing, s))
-
-    def sample(self, pose: Array, rng: np.random.Generator, ids: ArrayLike | None = None) -> Array:
-        """Noisy measurement of landmarks (all if `ids` is left out): (3, K, ...)."""
-        z = self.expected(pose, ids)
-        z[0] += _draw(self.sigma_r, self.nu, z[0].shape, rng)
-        z[1] = wrap(z[1] + _draw(self.sigma_phi, self.nu, z[1].shape, rng))
-        return z
-
-    def log_density(self, zk: Array, pose: Array) -> Array:
-        """Log p of one measurement (r, phi, s) at poses (3, ...): shape (...)."""
-        r, phi, s = zk
-        x, y, theta = pose
-        mx, my = self.world.locate(s)
-        dx, dy = mx - x, my - y
-        range_error = r - np.sqrt(dx * dx + dy * dy)
-        bearing_error = wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)
-        return log_student(range_error, self.sigma_r, self.nu) + log_student(
-            bearing_error, self.sigma_phi, self.nu
-        )
-
-
-@dataclass(frozen=True)
-class Range(Sensor):
-    r"""Distance to beacons of known identity: columns z_k = (r, s).
-
-    .. math:: p(z \mid x) = \mathcal N(r - b_s - \hat r;\, 0, \sigma_r^2)
-
-    Parameters
-    ----------
-    world : LandmarkMap
-    sigma_r : float, metres, > 0
-    bias : float or array (L,), metres
-        Constant error b of the range, measured minus true: one number, or one per landmark in
-        the order of ``world.ids``. Radios usually read long.
-    nu : float
-        Degrees of freedom of a Student t with scale sigma_r; inf is the Gaussian above.
-
-    Raises
-    ------
-    ParameterError
-        If sigma_r or nu is not positive, or there is not one bias per landmark.
-    """
-
-    world: LandmarkMap
-    sigma_r: float
-    bias: float | Array = 0.0
-    nu: float = math.inf
+    sigma: ArrayLike | None = None
+    Sigma: ArrayLike | None = None
     components: ClassVar[int] = 2
 
     def __post_init__(self) -> None:
-        require_positive("sigma_r", self.sigma_r)
-        _require_nu(self.nu)
-        bias = require_finite("bias", self.bias)
-        if bias.shape not in ((), (len(self.world),)):
+        if (self.sigma is None) == (self.Sigma is None):
             raise ParameterError(
-                f"bias must be one number or one per landmark ({len(self.world)}), "
-                f"got shape {bias.shape}"
+                "Position needs sigma (deviations) or Sigma (covariance), not both"
             )
-        biased = np.broadcast_to(bias, len(self.world))
-        offsets = LandmarkMap(np.stack((biased, biased)), self.world.ids, (0.0, 1.0, 0.0, 1.0))
-        object.__setattr__(self, "_offsets", offsets)
+        if self.Sigma is None:
+            sigma = require_positive("sigma", self.sigma)
+            if sigma.shape not in ((), (2,)):
+                raise ShapeError(f"sigma must be one number or two, got shape {sigma.shape}")
+            root = np.diag(np.broadcast_to(sigma, 2))
+        else:
+            root = _covariance_root(require_finite("Sigma", self.Sigma))
+        object.__setattr__(self, "_root", root)
 
-    def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
-        """Noise-free (but biased) ranges to landmarks: (2, K, ...)."""
-        pose = require_components("pose", pose, 3)
-        (dx, dy), s = _seen(self.world, ids, pose)
-        return np.stack((np.hypot(dx, dy) + self._bias_of(s), s))
+    def expected(self, pose: Array) -> Array:
+        """The position itself, as one measurement: (2, 1, ...)."""
+        return np.array(pose[:2, None], dtype=float)
 
-    def sample(self, pose: Array, rng: np.random.Generator, ids: ArrayLike | None = None) -> Array:
-        """Noisy ranges to landmarks: (2, K, ...)."""
-        z = self.expected(pose, ids)
-        z[0] += _draw(self.sigma_r, self.nu, z[0].shape, rng)
-        return z
+    def sample(self, pose: Array, rng: np.random.Generator) -> Array:
+        """One noisy position: (2, 1, ...)."""
+        z = self.expected(pose)
+        return z + np.tensordot(self._root, rng.standard_normal(z.shape), axes=1)  # type: ignore[attr-defined]
 
     def log_density(self, zk: Array, pose: Array) -> Array:
-        """Log p of one measurement (r, s) at poses (3, ...): shape (...)."""
-        r, s = zk
-        mx, my = self.world.locate(s)
-        dx, dy = mx - pose[0], my - pose[1]
-        error = r - self._bias_of(s) - np.sqrt(dx * dx + dy * dy)
-        return log_student(error, self.sigma_r, self.nu)
+        """Log p of one position (2, ...) at states (D, ...): shape (...)."""
+        (s11, _), (s21, s22) = self._root  # type: ignore[attr-defined]
+        e1 = (zk[0] - pose[0]) / s11
+        e2 = (zk[1] - pose[1] - s21 * e1) / s22
+        return -0.5 * (e1 * e1 + e2 * e2) - math.log(2 * math.pi * s11 * s22)
 
-    def _bias_of(self, s: ArrayLike) -> Array:
-        return self._offsets.locate(s)[0]  # type: ignore[attr-defined]
+
+def _covariance_root(Sigma: Array) -> Array:
+    """Lower triangular S with S S^T = Sigma."""
+    if Sigma.shape != (2, 2):
+        raise ShapeError(f"Sigma must have shape (2, 2), got {Sigma.shape}")
+    symmetric = np.allclose(Sigma, Sigma.T)
+    if not symmetric or np.linalg.eigvalsh(Sigma)[0] <= 0:
+        raise ParameterError(
+            f"Sigma must be symmetric with positive eigenvalues, got {Sigma.tolist()}"
+        )
+    return np.asarray(np.linalg.cholesky(Sigma), dtype=float)
 
 
 @dataclass(frozen=True)
-class OutlierMixture(Sensor):
-    r"""Allow each measurement to be false, with a density that knows nothing.
+class Compass(Sensor):
+    r"""The heading itself: columns z_k = (theta,).
 
-    .. math:: p(z \mid x) = (1 - \epsilon)\, p_{\text{sensor}}(z \mid x) + \epsilon\, c
-
-    Far from every landmark the likelihood is then the floor :math:`\epsilon c`, not zero, and
-    one false measurement cannot kill the true particles.
+    .. math:: p(z \mid x) = \mathcal N(\mathrm{wrap}(z - b - \theta);\, 0, \sigma_\theta^2)
 
     Parameters
     ----------
-    sensor : Sensor
-        The model of an honest measurement.
-    epsilon : float in [0, 1]
-        The share of false measurements.
-    density : float, > 0
-        The density c of a false one, in the units of z: for ranges up to r_max and any bearing
-        1 / (2 pi r_max).
+    sigma_theta : float, radians, > 0
+    bias : float, radians
+        Constant error b, measured minus true: the declination, or a compass mounted askew.
+    nu : float
+        Degrees of freedom of a Student t with scale sigma_theta; inf is the Gaussian above.
 
     Raises
     ------
     ParameterError
-        If epsilon is not in [0, 1] or the density is not positive.
+        If sigma_theta or nu is not positive, or the bias is not finite.
     """
 
-    sensor: Sensor
-    epsilon: float
-    density: float
+    sigma_theta: float
+    bias: float = 0.0
+    nu: float = math.inf
+    components: ClassVar[int] = 1
 
     def __post_init__(self) -> None:
-        require_fraction("epsilon", self.epsilon)
-        require_positive("density", self.density)
+        require_positive("sigma_theta", self.sigma_theta)
+        require_finite("bias", self.bias)
+        require_nu(self.nu)
 
-    @property
-    def components(self) -> int:  # type: ignore[override]
-        """Rows of a measurement, those of the wrapped sensor."""
-        return self.sensor.components
+    def expected(self, pose: Array) -> Array:
+        """Noise-free (but biased) heading: (1, 1, ...)."""
+        return wrap(require_components("pose", pose, 3)[2:, None] + self.bias)
 
-    def expected(self, pose: Array, **which: Any) -> Array:
-        """What an honest measurement would be."""
-        return self.sensor.expected(pose, **which)  # type: ignore[attr-defined]
+    def sample(self, pose: Array, rng: np.random.Generator) -> Array:
+        """One noisy heading: (1, 1, ...)."""
+        z = self.expected(pose)
+        return wrap(z + draw_errors(self.sigma_theta, self.nu, z.shape, rng))
 
     def log_density(self, zk: Array, pose: Array) -> Array:
-        """Log of the mixture for one measurement: shape (...)."""
-        honest = self.sensor.log_density(zk, pose)
-        if self.epsilon == 0:
-            return honest
-        if self.epsilon == 1:
-            return np.full_like(honest, math.log(self.density))
-        return np.logaddexp(
-            math.log1p(-self.epsilon) + honest, math.log(self.epsilon * self.density)
-        )
-
-
-def _require_nu(nu: float) -> None:
-    if not nu > 0:
-        raise ParameterError(f"nu must be > 0 (inf for a Gaussian), got {nu}")
-
-
-def _draw(sigma: float, nu: float, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
-    """Errors of scale sigma: Gaussian, or Student t."""
-    draws = rng.standard_normal(shape) if math.isinf(nu) else rng.standard_t(nu, shape)
-    return sigma * draws
+        """Log p of one heading (1, ...) at poses (3, ...): shape (...)."""
+        return log_student(wrap(zk[0] - self.bias - pose[2]), self.sigma_theta, self.nu)
