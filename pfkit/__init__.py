@@ -31,13 +31,9 @@ from pfkit.maps import LandmarkMap
 from pfkit.resampling import SCHEMES, multinomial, residual, stratified, systematic
 
 # L2: models, answers
-from pfkit.motion import (
-    MotionModel,
-    OdometryMotion,
-    VelocityMotion,
-    drive_arc,
-    odometry_control,
-)
+from pfkit.motion import MotionModel, VelocityMotion, drive_arc
+from pfkit.odometry_motion import OdometryMotion, odometry_control
+from pfkit.wheels import Bicycle, DifferentialDrive
 from pfkit.sensors import (
     Compass,
     Position,
@@ -47,6 +43,7 @@ from pfkit.sensors import (
     log_student,
 )
 from pfkit.landmark_sensors import Bearing, Range, RangeBearing
+from pfkit.intermittent import Intermittent
 from pfkit.robust import Gate, OutlierMixture, Tempered
 from pfkit.estimators import covariance, mean_pose
 
@@ -66,6 +63,9 @@ from pfkit.diagnostics import (
     settle_time,
     trace,
 )
+from pfkit.faults import Outliers, Sight
+from pfkit.routes import PurePursuit, commands, odometry_along
+from pfkit.simulate import drive, sense, simulate_log
 
 # L5: studies
 

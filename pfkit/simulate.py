@@ -1,0 +1,264 @@
+r"""Simulation: a robot whose truth we know.
+
+A simulated log comes from the same two densities that the filter assumes,
+
+.. math:: x_t \sim p(x_t \mid u_t, x_{t-1}), \qquad z_t \sim p(z_t \mid x_t) ,
+
+so that a filter with these models has no excuse. Then we take the excuses away one by one:
+simulate with one model and filter with another, hide landmarks (`Sight`), spoil measurements
+with known labels (`Outliers`), or carry the robot off (``kidnap``).
+
+`drive` makes the truth, `sense` the measurements along it, `simulate_log` both. Each draws
+from a random stream of its own. So a change to the sensor leaves the route as it was, and two
+filters or two sensors can be compared on the same drive.
+
+B robots drive side by side when the start is ``(3, B, 1)`` (or ``batch=B``). The log then
+holds truth ``(3, T, B, 1)`` and measurements ``(n, K, B, 1)``, which broadcast against B
+particle sets ``(3, B, M)``.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pfkit.errors import ParameterError, ShapeError, require_count, require_finite, require_positive
+from pfkit.faults import Outliers
+from pfkit.intermittent import Intermittent
+from pfkit.log import Log
+from pfkit.motion import MotionModel
+from pfkit.odometry_motion import OdometryMotion
+
+Array = NDArray[np.float64]
+Driver = Callable[[int, Array], ArrayLike]
+Kidnap = Mapping[int, ArrayLike | None]
+
+
+def drive(
+    start: ArrayLike,
+    u: ArrayLike | Driver,
+    motion: MotionModel,
+    rng: np.random.Generator,
+    *,
+    steps: int | None = None,
+    kidnap: Kidnap | None = None,
+    world: Any = None,
+) -> tuple[Array, Array]:
+    r"""Where the robot really went: :math:`x_t \sim p(x_t \mid u_t, x_{t-1})`.
+
+    Parameters
+    ----------
+    start : array_like (D,) or (D, B, 1)
+    u : array_like (n, T) or (n, T, B, 1), or a function (k, pose) -> (n, ...)
+        Commands, or a driver who looks where the robot is, such as `PurePursuit`.
+    motion : MotionModel
+    rng : numpy.random.Generator
+    steps : int
+        How long a driver drives; not needed with commands.
+    kidnap : mapping from step k to a pose (D,), or to None for anywhere in the world
+        The robot is put there at the end of step k, and nobody tells it.
+    world : map with ``sample_poses``, for kidnapping to None
+
+    Returns
+    -------
+    u : array (n, T, ...), the controls that were given
+    truth : array (D, T, ...)
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If start or u have the wrong shape, or a kidnapping has no step or no world.
+    """
+    pose = require_finite("start", start)
+    if pose.ndim not in (1, 3):
+        raise ShapeError(f"start must be (D,), or (D, B, 1) for a batch, got {pose.shape}")
+    driver, steps = _driver(u, steps)
+    off = _kidnap_steps(kidnap, steps)
+    controls, truth = [], []
+    for k in range(steps):
+        controls.append(np.asarray(driver(k, pose), dtype=float))
+        moved = motion.sample(pose, controls[-1], rng)
+        if np.shape(moved) != pose.shape:
+            raise ShapeError(
+                f"the motion model turned {pose.shape} into {np.shape(moved)}; use u row by row, "
+                "v, omega, dt = u, so that it broadcasts over a batch"
+            )
+        pose = moved
+        if k in off:
+            pose = _carry_off(off[k], pose.shape, world, rng)
+        truth.append(pose)
+    return np.stack(controls, axis=1), np.stack(truth, axis=1)
+
+
+def sense(
+    truth: ArrayLike,
+    sensor: Any,
+    rng: np.random.Generator,
+    *,
+    every: int = 1,
+    sight: Callable[[Array], NDArray[np.bool_]] | None = None,
+    outliers: Outliers | None = None,
+) -> tuple[list[Array], list[NDArray[np.bool_]]]:
+    r"""What the robot measured on its way: :math:`z_t \sim p(z_t \mid x_t)`.
+
+    Parameters
+    ----------
+    truth : array_like (D, T) or (D, T, B, 1)
+    sensor : sensor with ``sample(pose, rng)`` -> (n, K, ...), and ``components`` = n
+    rng : numpy.random.Generator
+    every : int >= 1
+        Measure at every such step, the first time at step ``every - 1``; else K = 0.
+    sight : function of poses (D, ...) to bool (K, ...), optional
+        Which columns are measured, such as `Sight`. A batch needs an `Intermittent` sensor.
+    outliers : Outliers, optional
+
+    Returns
+    -------
+    z : list of T arrays (n, K) or (n, K, B, 1)
+    false : list of T bool arrays (K,) or (K, B, 1), the labels of the outliers
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If truth has the wrong shape, or a batch with `sight` has no `Intermittent` sensor.
+    """
+    truth, every = require_finite("truth", truth), require_count("every", every)
+    if truth.ndim not in (2, 4):
+        raise ShapeError(f"truth must be (D, T), or (D, T, B, 1) for a batch, got {truth.shape}")
+    if sight is not None and truth.ndim == 4 and not isinstance(sensor, Intermittent):
+        raise ParameterError("robots of a batch see different landmarks; use Intermittent(sensor)")
+    z, false = [], []
+    for k in range(truth.shape[1]):
+        pose = truth[:, k]
+        if (k + 1) % every:
+            zk = np.empty((sensor.components, 0, *pose.shape[1:]))
+        else:
+            zk = _look(sensor, pose, sight, rng)
+        labels = np.zeros(zk.shape[1:], dtype=bool)
+        if outliers is not None:
+            zk, labels = outliers.spoil(zk, rng)
+        z.append(zk)
+        false.append(labels)
+    return z, false
+
+
+def simulate_log(
+    start: ArrayLike,
+    u: ArrayLike | Driver,
+    motion: MotionModel,
+    sensor: Any,
+    rng: np.random.Generator,
+    *,
+    steps: int | None = None,
+    batch: int | None = None,
+    every: int = 1,
+    sight: Callable[[Array], NDArray[np.bool_]] | None = None,
+    outliers: Outliers | None = None,
+    kidnap: Kidnap | None = None,
+    dt: float | None = None,
+    source: str = "simulated",
+) -> Log:
+    """Drive and measure: a log with its truth.
+
+    Parameters
+    ----------
+    start, u, motion, steps, kidnap
+        As in `drive`.
+    sensor, every, sight, outliers
+        As in `sense`.
+    rng : numpy.random.Generator
+        Spawns one stream for the drive and one for the measurements.
+    batch : int, optional
+        Drive B robots side by side, all from the one start.
+    dt : float, > 0, seconds, optional
+        Time of a step. If left out it is the third row of u, where velocity, wheel and bicycle
+        commands keep it; odometry has none, and then it is 1 s.
+    source : str, for tables and captions
+
+    Returns
+    -------
+    Log with u (n, T, ...), z (n, K, ...), truth (D, T, ...), and outlier labels if asked for
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        As `drive` and `sense`; also if the robots of a batch have different dt.
+    """
+    start = require_finite("start", start)
+    if batch is not None:
+        start = _side_by_side(start, require_count("batch", batch))
+    world = getattr(sensor, "world", None)
+    on_the_road, at_the_sensor = rng.spawn(2)
+    u, truth = drive(start, u, motion, on_the_road, steps=steps, kidnap=kidnap, world=world)
+    z, false = sense(truth, sensor, at_the_sensor, every=every, sight=sight, outliers=outliers)
+    return Log(
+        t=_times(u, motion, dt),
+        u=u,
+        z=z,
+        truth=truth,
+        start=start,
+        world=world,
+        source=source,
+        outlier=None if outliers is None else false,
+    )
+
+
+def _driver(u: ArrayLike | Driver, steps: int | None) -> tuple[Driver, int]:
+    """Commands and drivers alike as a function (k, pose), and the number of steps."""
+    if callable(u):
+        return u, require_count("steps (how long the driver drives)", steps)
+    given = require_finite("u", u)
+    if given.ndim not in (2, 4) or given.shape[1] == 0:
+        raise ShapeError(f"u must be (n, T), T >= 1, or (n, T, B, 1), got {given.shape}")
+    return lambda k, pose: given[:, k], given.shape[1]
+
+
+def _side_by_side(start: Array, B: int) -> Array:
+    if start.ndim != 1:
+        raise ShapeError(f"batch needs one start (D,), got {start.shape}; drop batch")
+    return np.repeat(start[:, None, None], B, axis=1)
+
+
+def _kidnap_steps(kidnap: Kidnap | None, steps: int) -> Kidnap:
+    wrong = [k for k in kidnap or {} if k not in range(steps)]
+    if wrong:
+        raise ParameterError(f"kidnap at step {wrong[0]}: the drive has steps 0 to {steps - 1}")
+    return kidnap or {}
+
+
+def _carry_off(
+    goal: ArrayLike | None, shape: tuple[int, ...], world: Any, rng: np.random.Generator
+) -> Array:
+    """The pose after a kidnapping, in the shape of the pose before."""
+    if goal is None:
+        if world is None:
+            raise ParameterError("kidnap to None needs a world to draw from; name a pose instead")
+        return world.sample_poses(shape[1:] or (1,), rng).reshape(shape)
+    goal = require_finite("kidnap pose", goal)
+    return np.broadcast_to(goal.reshape(-1, *(1,) * (len(shape) - 1)), shape).copy()
+
+
+def _look(sensor: Any, pose: Array, sight: Callable | None, rng: np.random.Generator) -> Array:
+    """One measurement set, without (or with marks on) what is not seen."""
+    z = sensor.sample(pose, rng)
+    if sight is None:
+        return z
+    seen = sight(pose)
+    if isinstance(sensor, Intermittent):
+        z[-1] = seen
+        return z
+    return z[:, seen]
+
+
+def _times(u: Array, motion: MotionModel, dt: float | None) -> Array:
+    """Times (T,) at the ends of the steps, seconds."""
+    T = u.shape[1]
+    if dt is None and (isinstance(motion, OdometryMotion) or len(u) < 3):
+        dt = 1.0
+    durations = u[2] if dt is None else np.full(T, require_positive("dt", dt))
+    if durations.ndim > 1 and (durations != durations[:, :1]).any():
+        raise ParameterError("a log has one clock, but the dt in u differ over the batch; pass dt=")
+    return np.cumsum(durations if durations.ndim == 1 else durations[:, 0, 0])
