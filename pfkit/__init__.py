@@ -52,6 +52,7 @@ from pfkit.filters import History, Info, predict, resample, run, select, step, u
 from pfkit.histogram import door_likelihood, predict_1d, shift_kernel, update_1d
 
 # L4: simulation, data, judgement
+from pfkit import worlds
 from pfkit.diagnostics import (
     dead_reckoning,
     heading_rmse,
