@@ -15,7 +15,12 @@ direction :math:`\theta + \omega\Delta t/2`. Written so, the straight line is si
 with omega = 0, and nothing is divided by zero.
 
 Every model has ``mean(pose, u)``, which is noise-free, and ``sample(pose, u, rng)``. Both
-take one pose ``(3,)``, a cloud ``(3, M)`` or a batch ``(3, B, M)``.
+take one pose ``(3,)``, a cloud ``(3, M)`` or a batch ``(3, B, M)``. Where three errors enter,
+the model has a density too, ``log_density(pose1, u, pose0)``: the errors that would explain the
+move, and the Jacobian from errors to poses, without which it would not integrate to one.
+
+Here are the parts that all models share, and the textbook's velocity model. `odometry_motion`
+holds its rival, and `wheels` the models of two common vehicles.
 """
 
 from __future__ import annotations
@@ -26,7 +31,7 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_components, require_non_negative
+from pfkit.errors import ParameterError, ShapeError, require_components, require_non_negative
 from pfkit.geometry import between, wrap
 
 Array = NDArray[np.float64]
@@ -40,9 +45,19 @@ class MotionModel(Protocol):
     def sample(self, pose: Array, u: Array, rng: np.random.Generator) -> Array: ...
 
 
-def _noise(variance: ArrayLike, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
-    """Zero-mean Gaussian noise of a given variance, one number per particle."""
+def draw_noise(variance: ArrayLike, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
+    """Zero-mean Gaussian noise of a given variance: one number for each entry of the shape."""
     return np.sqrt(variance) * rng.standard_normal(shape)
+
+
+def log_noise(error: Array, variance: Array) -> Array:
+    """Log density of that noise; a variance of 0 has none."""
+    if not np.all(np.asarray(variance) > 0):
+        raise ParameterError(
+            "the motion has no density where a variance is 0: the particles lie on a line or a "
+            "surface; give every alpha a value > 0 and let the robot move"
+        )
+    return -0.5 * (error * error / variance + np.log(2 * np.pi * variance))
 
 
 def drive_arc(pose: Array, distance: ArrayLike, turn: ArrayLike) -> Array:
@@ -68,11 +83,13 @@ def drive_arc(pose: Array, distance: ArrayLike, turn: ArrayLike) -> Array:
     """
     x, y, theta = pose
     half = 0.5 * np.asarray(turn, dtype=float)
-    chord = distance * np.sinc(half / np.pi)
+    chord = np.asarray(distance, dtype=float) * np.sinc(half / np.pi)
     direction = theta + half
-    return np.stack(
-        (x + chord * np.cos(direction), y + chord * np.sin(direction), wrap(direction + half))
-    )
+    end = np.empty((3, *np.broadcast_shapes(np.shape(x), np.shape(chord))))
+    end[0] = x + chord * np.cos(direction)
+    end[1] = y + chord * np.sin(direction)
+    end[2] = wrap(direction + half)
+    return end
 
 
 @dataclass(frozen=True)
@@ -124,106 +141,61 @@ class VelocityMotion:
 
     def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
         """Each particle drives with errors of its own: (3, ...), (3,) -> (3, ...)."""
-        pose = require_components("pose", pose, 3)
-        v, omega, dt = require_components("u", u, 3)
+        pose, u = require_components("pose", pose, 3), require_components("u", u, 3)
+        v, omega, dt = u
         var_v, var_omega, var_gamma = self.variances(u)
-        shape = pose.shape[1:]
-        v_hat = v + _noise(var_v, shape, rng)
-        omega_hat = omega + _noise(var_omega, shape, rng)
+        shape = np.broadcast_shapes(pose.shape[1:], u.shape[1:])
+        v_hat = v + draw_noise(var_v, shape, rng)
+        omega_hat = omega + draw_noise(var_omega, shape, rng)
         moved = drive_arc(pose, v_hat * dt, omega_hat * dt)
         if self.alpha[4] or self.alpha[5]:
-            moved[2] = wrap(moved[2] + dt * _noise(var_gamma, shape, rng))
+            moved[2] = wrap(moved[2] + dt * draw_noise(var_gamma, shape, rng))
         return moved
 
+    def log_density(self, pose1: Array, u: ArrayLike, pose0: Array) -> Array:
+        r"""Log of p(x_t | u_t, x_{t-1}), in 1 / (m^2 rad).
 
-def odometry_control(pose0: ArrayLike, pose1: ArrayLike) -> Array:
-    r"""What the odometer saw between two of its poses: turn, drive, turn.
+        One arc forwards and one backwards explain a move of chord c in the direction
+        :math:`\beta` from the robot's nose: :math:`\phi = 2\beta`, and
+        :math:`\phi = 2\,\mathrm{wrap}(\beta + \pi)`. Each gives the errors
+        of v, omega and gamma, and
 
-    .. math:: \delta_{rot1} = \mathrm{atan2}(\Delta y, \Delta x) - \theta_0, \quad
-              \delta_{trans} = \sqrt{\Delta x^2 + \Delta y^2}, \quad
-              \delta_{rot2} = \theta_1 - \theta_0 - \delta_{rot1}
+        .. math:: dx\,dy\,d\theta = \tfrac12\, c\, |\mathrm{sinc}(\tfrac{\phi}{2})|\,
+                  \Delta t^3\; d\hat v\, d\hat\omega\, d\hat\gamma .
 
-    Parameters
-    ----------
-    pose0, pose1 : array_like (3, ...), odometry poses, metres and radians
+        Parameters
+        ----------
+        pose1, pose0 : array (3, ...), metres and radians, after and before; they broadcast
+        u : array_like (3, ...)
 
-    Returns
-    -------
-    u : array (3, ...): rot1 (rad), trans (m), rot2 (rad). A robot that turned on the spot has
-        no direction of travel; then rot1 is 0 and rot2 takes the whole turn.
+        Returns
+        -------
+        array (...)
 
-    Notes
-    -----
-    Source: Probabilistic Robotics, Table 5.6, lines 2 to 4.
-    """
-    dx, dy, turn = between(pose0, pose1)
-    trans = np.hypot(dx, dy)
-    rot1 = np.where(trans > 0, np.arctan2(dy, dx), 0.0)
-    return np.stack((rot1, trans, wrap(turn - rot1)))
+        Raises
+        ------
+        ParameterError
+            If alpha_5 and alpha_6 are 0 (all headings lie on a surface), or the robot stands.
 
-
-@dataclass(frozen=True)
-class OdometryMotion:
-    r"""Repeat what the odometer saw, turn - drive - turn: u = (rot1, trans, rot2).
-
-    .. math:: \hat\delta_{rot1} = \delta_{rot1} + \mathcal N(0, \alpha_1\delta_{rot1}^2
-                                  + \alpha_2\delta_{trans}^2), \quad
-              \hat\delta_{trans} = \delta_{trans} + \mathcal N(0, \alpha_3\delta_{trans}^2
-                                  + \alpha_4(\delta_{rot1}^2 + \delta_{rot2}^2))
-
-    and rot2 like rot1. `odometry_control` makes u from two odometer poses.
-
-    Parameters
-    ----------
-    alpha : 4 numbers >= 0
-        alpha_1 dimensionless, alpha_2 in (rad/m)^2, alpha_3 dimensionless, alpha_4 (m/rad)^2.
-
-    Raises
-    ------
-    ParameterError, ShapeError
-        If an alpha is negative or not finite, or there are not four.
-
-    Notes
-    -----
-    Source: Probabilistic Robotics, Table 5.6 (sampling), Table 5.5 (density). As in the
-    book's text, alphas multiply squares and give variances.
-    """
-
-    alpha: tuple[float, float, float, float] = (0.01, 0.01, 0.01, 0.01)
-
-    def __post_init__(self) -> None:
-        alpha = require_non_negative("alpha", self.alpha)
-        if alpha.shape != (4,):
-            raise ShapeError(f"alpha must hold 4 numbers, got shape {alpha.shape}")
-        object.__setattr__(self, "alpha", tuple(alpha.tolist()))
-
-    def variances(self, u: ArrayLike) -> Array:
-        """Variances (3, ...) of rot1, trans and rot2 for a control u (3, ...)."""
-        rot1, trans, rot2 = require_components("u", u, 3)
-        a1, a2, a3, a4 = self.alpha
-        rot1, trans, rot2 = rot1 * rot1, trans * trans, rot2 * rot2
-        return np.stack(
-            (a1 * rot1 + a2 * trans, a3 * trans + a4 * (rot1 + rot2), a1 * rot2 + a2 * trans)
-        )
-
-    def mean(self, pose: Array, u: ArrayLike) -> Array:
-        """Noise-free turn, drive, turn: pose (3, ...), u (3,) -> pose (3, ...)."""
-        pose = require_components("pose", pose, 3)
-        return self._move(pose, *require_components("u", u, 3))
-
-    def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
-        """Each particle repeats the motion with errors of its own: (3, ...), (3,) -> (3, ...)."""
-        pose, u = require_components("pose", pose, 3), require_components("u", u, 3)
-        noisy = [
-            component + _noise(variance, pose.shape[1:], rng)
-            for component, variance in zip(u, self.variances(u), strict=True)
-        ]
-        return self._move(pose, *noisy)
-
-    @staticmethod
-    def _move(pose: Array, rot1: ArrayLike, trans: ArrayLike, rot2: ArrayLike) -> Array:
-        x, y, theta = pose
-        direction = theta + rot1
-        return np.stack(
-            (x + trans * np.cos(direction), y + trans * np.sin(direction), wrap(direction + rot2))
-        )
+        Notes
+        -----
+        Source: Probabilistic Robotics, Table 5.1, which leaves the Jacobian out. Arcs of more
+        than a full turn in one step are not counted. The density has a pole at c = 0.
+        """
+        u = require_components("u", u, 3)
+        v, omega, dt = u
+        var_v, var_omega, var_gamma = self.variances(u)
+        dx, dy, turn = between(pose0, pose1)
+        chord, beta = np.hypot(dx, dy), np.arctan2(dy, dx)
+        branches = []
+        for sign, half in ((1.0, beta), (-1.0, wrap(beta + np.pi))):
+            bend = np.sinc(half / np.pi)
+            with np.errstate(divide="ignore"):  # the pole
+                log_jacobian = np.log(0.5 * chord * bend * dt**3)
+            branches.append(
+                log_noise(sign * chord / (bend * dt) - v, var_v)
+                + log_noise(2 * half / dt - omega, var_omega)
+                + log_noise(wrap(turn - 2 * half) / dt, var_gamma)
+                - log_jacobian
+            )
+        return np.logaddexp(*branches)
