@@ -10,6 +10,7 @@ import argparse
 import functools
 import hashlib
 import http.server
+import shutil
 import subprocess
 import sys
 import time
@@ -36,7 +37,7 @@ def fingerprint() -> str:
 
 
 def build_live_parts() -> None:
-    """Build what makes pages compute (Python for the browser); the book does without if it fails."""
+    """Build what makes pages compute ; if that fails, the book does without."""
     script = ROOT / "tools" / "live" / "build.py"
     if script.exists() and subprocess.call([sys.executable, str(script)], cwd=ROOT):
         say("the live parts could not be built: the pages will show their recorded pictures only")
@@ -52,6 +53,7 @@ def build() -> None:
         say("the book is up to date")
         return
     say("building the book (every warning is an error)")
+    shutil.rmtree(ROOT / "_build", ignore_errors=True)  # pages that are no more would stay
     command = [str(BIN / "jupyter-book"), "build", ".", "-W", "--keep-going", "--all"]
     start = time.monotonic()
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8")

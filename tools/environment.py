@@ -1,4 +1,4 @@
-"""The project's virtual environment: made once, renewed when the lock file or pyproject.toml changes.
+"""The project's virtual environment: made once, renewed when what it is made from changes.
 
 `prepare("book")` installs what the book needs, `prepare("all")` everything that the tests and
 Jupyter need as well. A stamp inside the environment remembers the hash of what it was made from, so
@@ -23,6 +23,7 @@ BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = BIN / ("python.exe" if os.name == "nt" else "python")
 LOCKS = {"book": ROOT / "requirements-book.lock", "all": ROOT / "requirements.lock"}
 OLDEST, NEWEST = (3, 11), (3, 13)
+THIS = ".".join(map(str, sys.version_info[:2]))
 
 
 class Stop(Exception):
@@ -38,16 +39,14 @@ def require_python() -> None:
     """Stop unless this Python is one of those the lock file was made for."""
     if not OLDEST <= sys.version_info[:2] <= NEWEST:
         raise Stop(
-            "Python 3.11, 3.12 or 3.13 is needed, but this is {}.{} ({}). "
-            "Install one of them, or name it: make PYTHON=/path/to/python3.11".format(
-                sys.version_info[0], sys.version_info[1], sys.executable
-            )
+            f"Python 3.11, 3.12 or 3.13 is needed, but this is {THIS} ({sys.executable}). "
+            "Install one of them, or name it: make PYTHON=/path/to/python3.11"
         )
 
 
 def fingerprint(kind: str) -> str:
     """Hash what an environment is made from: its lock file, pyproject.toml, Python's version."""
-    digest = hashlib.sha256(("%d.%d" % sys.version_info[:2]).encode())
+    digest = hashlib.sha256(THIS.encode())
     for path in (LOCKS[kind], ROOT / "pyproject.toml"):
         digest.update(path.read_bytes().replace(b"\r\n", b"\n"))
     return digest.hexdigest()
@@ -82,16 +81,16 @@ def prepare(kind: str) -> None:
     if is_ready(kind):
         return
     if not PYTHON.exists():
-        say("creating the environment .venv with Python %d.%d" % sys.version_info[:2])
+        say(f"creating the environment .venv with Python {THIS}")
         try:
             venv.create(str(VENV), with_pip=True)
         except (OSError, subprocess.CalledProcessError) as error:
             raise Stop(
-                "the environment .venv could not be created (%s). "
-                "On Debian and Ubuntu: apt install python3-venv" % error
+                f"the environment .venv could not be created ({error}). "
+                "On Debian and Ubuntu: apt install python3-venv"
             ) from error
     lock = LOCKS[kind]
-    say("installing the packages pinned in %s (once; a minute or two)" % lock.name)
+    say(f"installing the packages pinned in {lock.name} (once; a minute or two)")
     _pip("--no-compile", "--no-deps", "--requirement", str(lock))
     _pip("--no-compile", "--no-deps", "--no-build-isolation", "--editable", str(ROOT))
     (VENV / ("stamp-" + kind)).write_text(fingerprint(kind))
@@ -111,7 +110,7 @@ def lock() -> None:
     ):
         if subprocess.run(command, cwd=str(ROOT), stdout=subprocess.DEVNULL).returncode:
             raise Stop("uv could not resolve the requirements; its reason is above")
-    say("wrote {} and {}".format(everything, book))
+    say(f"wrote {everything} and {book}")
 
 
 if __name__ == "__main__":
@@ -121,4 +120,4 @@ if __name__ == "__main__":
     try:
         lock() if what == "lock" else prepare(what)
     except Stop as reason:
-        sys.exit("[course] stopped: %s" % reason)
+        sys.exit(f"[course] stopped: {reason}")

@@ -200,7 +200,7 @@ def faults(notebook: dict) -> list[str]:
         kinds = {kind for output in cell["outputs"] for kind in output.get("data", {})}
         alt = cell["metadata"].get("mystnb", {}).get("image", {}).get("alt", "")
         if kinds & {"image/png", "image/svg+xml"} and len(alt) < SHORTEST_ALT:
-            found.append(f"cell {cell.get('id')}: a figure without alt text (metadata mystnb.image.alt)")
+            found.append(f"cell {cell.get('id')}: no alt text (metadata mystnb.image.alt)")
         if "application/vnd.jupyter.widget-view+json" in kinds:
             found.append(f"cell {cell.get('id')}: a stored widget is dead in the page")
         if any(output["output_type"] == "error" for output in cell["outputs"]):

@@ -54,6 +54,6 @@ if __name__ == "__main__":
         require_python()
         sys.exit(main(sys.argv[1:]))
     except Stop as reason:
-        sys.exit("[course] stopped: %s" % reason)
+        sys.exit(f"[course] stopped: {reason}")
     except KeyboardInterrupt:
         sys.exit("[course] interrupted")

@@ -1,2 +1,105 @@
-def setup(app):
+"""Sphinx extension: what the theme leaves to be mended in every page of this book.
+
+* One `h1` a page: the theme repeats the title for print as a second one.
+* Names of buttons that begin with what is seen on them, so that voice control finds them.
+* Tables scroll by themselves on a narrow screen instead of pushing the page wide.
+* Search from a folder on disk lists results without summaries: a browser does not let a page read
+  its neighbours there.
+* The front page sits in book/, so the top of the site forwards to it.
+
+It works on the finished HTML, because the theme offers no setting for these; each mend is a pattern
+that must still be found (`Mend.expected`), so that a new theme version cannot silently undo it.
+"""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+from typing import NamedTuple
+
+from sphinx.application import Sphinx
+from sphinx.util import logging
+
+logger = logging.getLogger(__name__)
+
+NO_SUMMARY_ON_DISK = (
+    'if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;'
+)
+FORWARD = """<!DOCTYPE html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta http-equiv="refresh" content="0; url={target}">
+<title>{title}</title>
+</head>
+<body><main><h1>{title}</h1><p><a href="{target}">Open the book</a></p></main></body>
+</html>
+"""
+
+
+class Mend(NamedTuple):
+    """A pattern in the finished page, what replaces it, and whether every page must have it."""
+
+    pattern: re.Pattern[str]
+    replacement: str
+    expected: bool = True
+
+
+MENDS = (
+    Mend(
+        re.compile(r'(<div id="jb-print-docs-body" class="onlyprint">\s*)<h1>(.*?)</h1>', re.S),
+        r'\1<p class="print-title">\2</p>',
+        expected=False,
+    ),
+    Mend(
+        re.compile(r'(<button class="btn search-button-field[^>]*?) aria-label="[^"]*"'),
+        r"\1",
+    ),
+    Mend(
+        re.compile(r'(<i class="theme-switch [^>]*?)\s+title="[^"]*"'),
+        r'\1 aria-hidden="true"',
+    ),
+    Mend(re.compile(r'="Color mode"'), '="Colour mode"'),
+    Mend(
+        re.compile(r'(<table class="[^"]*\bdocutils\b.*?</table>)', re.S),
+        r'<div class="wide-table" tabindex="0" role="region" aria-label="Table">\1</div>',
+        expected=False,
+    ),
+)
+
+
+def mend(html: str) -> tuple[str, list[str]]:
+    """Apply every mend to a page; return it and the expected patterns that were not there."""
+    missing = []
+    for pattern, replacement, expected in MENDS:
+        html, count = pattern.subn(replacement, html)
+        if expected and not count:
+            missing.append(pattern.pattern)
+    return html, missing
+
+
+def mend_pages(app: Sphinx, error: Exception | None) -> None:
+    """Mend all pages of a finished HTML build and write the forwarding page at the top."""
+    if error is not None or app.builder.name != "html":
+        return
+    top = Path(app.outdir)
+    for name in [*app.env.found_docs, "search", "genindex"]:
+        path = top / f"{name}.html"
+        if not path.exists():
+            continue
+        html, missing = mend(path.read_text(encoding="utf-8"))
+        path.write_text(html, encoding="utf-8", newline="\n")
+        for pattern in missing:
+            logger.warning("%s: the theme no longer has %s; see course_page.py", name, pattern)
+    root = app.config.root_doc
+    if "/" in root:
+        forward = FORWARD.format(target=f"{root}.html", title=app.config.html_title)
+        (top / "index.html").write_text(forward, encoding="utf-8", newline="\n")
+
+
+def setup(app: Sphinx) -> dict[str, bool]:
+    """Register the mends."""
+    app.add_js_file(None, body=NO_SUMMARY_ON_DISK)
+    app.connect("build-finished", mend_pages, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

@@ -1,0 +1,158 @@
+"""What it takes to look at a page of the built book as a reader's browser does.
+
+The checks are plain functions that return a list of complaints, so that they can be tried on pages
+that are broken on purpose (test_page_checks.py) as well as on the book (test_pages.py).
+"""
+
+from __future__ import annotations
+
+import functools
+import http.server
+import os
+import shutil
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+ROOT = Path(__file__).resolve().parents[2]
+HTML = ROOT / "_build" / "html"
+AXE = ROOT / ".cache" / "assets" / "node_modules" / "axe-core" / "axe.min.js"
+FLAGS = (
+    "--no-sandbox --disable-gpu --disable-quic --disable-background-networking "
+    "--disable-component-update --disable-sync --no-first-run"
+).split()
+WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
+LARGEST_PAGE = 400_000  # bytes beyond what all pages share
+SHARED = "/_static/"
+FORWARDS = 'http-equiv="refresh"'
+NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
+
+OUTLINE = "[...document.querySelectorAll('h1,h2,h3,h4,h5,h6')].map(h => +h.tagName[1])"
+# Alt texts that say nothing: none, a file name, the hash Sphinx gives a picture.
+NO_ALT = r"""[...document.querySelectorAll('img, svg[role=img]:not([aria-hidden])')].filter(i => {
+  const alt = i.tagName == 'IMG' ? i.getAttribute('alt')
+    : i.getAttribute('aria-label') || i.getAttribute('aria-labelledby');
+  const silent = alt === '' && i.getAttribute('role') == 'presentation';
+  const bare = /^(\.\.|_images|[0-9a-f]{16,}|\S+\.(png|svg|jpg)$)/;
+  return !silent && (!(alt || '').trim() || bare.test(alt));
+}).map(i => i.outerHTML.slice(0, 120))"""
+TYPESET = "() => window.MathJax?.startup?.promise?.then(() => 0)"
+MATH_ERRORS = "[...document.querySelectorAll('mjx-merror')].map(e => e.textContent.slice(0, 80))"
+SEVERE = """() => axe.run(document, {resultTypes: ['violations']}).then(r => r.violations
+  .filter(v => ['serious', 'critical'].includes(v.impact))
+  .map(v => `${v.id} (${v.impact}) x${v.nodes.length}: ${v.nodes[0].html.slice(0, 150)}`))"""
+
+
+def find_browser() -> str | None:
+    """Return the path of Debian's Chromium or a relative; PFKIT_BROWSER names another."""
+    named = os.environ.get("PFKIT_BROWSER")
+    return named or next(filter(None, map(shutil.which, NAMES)), None)
+
+
+def pages(root: Path = HTML) -> list[str]:
+    """Return every page of the book, from its top folder."""
+    found = [path for path in root.rglob("*.html") if "_static" not in path.parts]
+    full = (path for path in found if FORWARDS not in path.read_text(encoding="utf-8"))
+    return sorted(path.relative_to(root).as_posix() for path in full)
+
+
+class _Quiet(http.server.SimpleHTTPRequestHandler):
+    def log_message(self, *args: Any) -> None:
+        pass
+
+    def copyfile(self, source: Any, outputfile: Any) -> None:
+        try:
+            super().copyfile(source, outputfile)
+        except (BrokenPipeError, ConnectionResetError):
+            pass  # the page was closed before the file was through
+
+
+@contextmanager
+def served(root: Path) -> Iterator[str]:
+    """Serve a folder on this machine; yield its address."""
+    handler = functools.partial(_Quiet, directory=str(root))
+    server = http.server.ThreadingHTTPServer(("127.0.0.1", 0), handler)
+    threading.Thread(target=server.serve_forever, daemon=True).start()
+    yield f"http://127.0.0.1:{server.server_port}/"
+    server.shutdown()
+
+
+@dataclass
+class Visit:
+    """What happened while a page loaded."""
+
+    base: str
+    complaints: list[str] = field(default_factory=list)
+    own_bytes: int = 0
+
+    def listen(self, tab: Any) -> None:
+        """Note errors, failures and requests that leave the book."""
+        tab.on("pageerror", lambda error: self.complaints.append(f"script error: {error}"[:200]))
+        tab.on("requestfailed", lambda r: self.complaints.append(f"failed: {r.url[-100:]}"))
+        tab.on("request", self._request)
+        tab.on("response", self._response)
+
+    def _request(self, request: Any) -> None:
+        if not request.url.startswith((self.base, "data:", "blob:")):
+            self.complaints.append(f"outside request: {request.url[:120]}")
+
+    def _response(self, response: Any) -> None:
+        if response.status >= 400:
+            self.complaints.append(f"{response.status}: {response.url[-100:]}")
+        if response.url.startswith("http") and SHARED not in response.url:
+            self.own_bytes += int(response.headers.get("content-length") or 0)
+
+
+def check_outline(tab: Any) -> list[str]:
+    """One h1, and no level skipped on the way down."""
+    levels = tab.evaluate(OUTLINE)
+    found = [] if levels.count(1) == 1 else [f"{levels.count(1)} h1 headings"]
+    jumps = [f"h{a} to h{b}" for a, b in pairwise(levels) if b > a + 1]
+    return found + [f"heading jump: {jump}" for jump in jumps]
+
+
+def check_content(tab: Any) -> list[str]:
+    """Alt texts, mathematics, headings."""
+    found = [f"no alt text: {image}" for image in tab.evaluate(NO_ALT)]
+    found += [f"mathematics does not parse: {text}" for text in tab.evaluate(MATH_ERRORS)]
+    return found + check_outline(tab)
+
+
+def check_width(tab: Any) -> list[str]:
+    """No sideways scrolling."""
+    excess = tab.evaluate("document.documentElement.scrollWidth - window.innerWidth")
+    return [f"scrolls sideways by {excess} px"] if excess > 2 else []
+
+
+def check_access(tab: Any) -> list[str]:
+    """No axe-core violation of level serious or critical."""
+    if not tab.evaluate("'axe' in window"):
+        tab.evaluate(AXE.read_text(encoding="utf-8"))
+    return [f"axe: {text}" for text in tab.evaluate(SEVERE)]
+
+
+def look(tab: Any, base: str, page: str, access: bool = True) -> list[str]:
+    """Open a page wide and narrow; return everything that is wrong with it."""
+    visit = Visit(base)
+    visit.listen(tab)
+    tab.set_viewport_size(WIDE)
+    tab.goto(base + page, wait_until="load")
+    tab.evaluate(TYPESET)
+    found = check_content(tab)
+    for size in (WIDE, NARROW):
+        tab.set_viewport_size(size)
+        found += [f"{text} at {size['width']} px" for text in check_width(tab)]
+        if access:
+            found += [f"{text} at {size['width']} px" for text in check_access(tab)]
+    if visit.own_bytes > LARGEST_PAGE:
+        found.append(f"{visit.own_bytes // 1000} kB of its own, more than 400 kB")
+    return visit.complaints + found
+
+
+def require_nothing(complaints: list[str]) -> None:
+    """Fail with one complaint a line, each once."""
+    assert not complaints, "\n" + "\n".join(dict.fromkeys(complaints))

@@ -1,0 +1,133 @@
+"""Every check of the project, in the order in which they are cheapest to fail.
+
+    make test                                      all of them; stops at the first that fails
+    python tools/run.py test --keep-going          runs the rest as well
+    python tools/run.py test --only layers unit    only these
+    python tools/run.py test --list                says what there is
+    python tools/run.py lint [--fix]               style and format alone
+
+It ends with a summary: what passed, what failed, what was skipped and why, and how long it took.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import subprocess
+import sys
+import time
+from typing import NamedTuple
+
+from environment import ROOT, say
+
+PYTHON = sys.executable
+PYTEST = [PYTHON, "-m", "pytest", "-p", "no:cacheprovider"]
+TWO_CORES = ["-n", "2", "--dist", "loadfile"]
+CODE = [name for name in ("pfkit", "tests", "tools", "book/_ext") if (ROOT / name).exists()]
+NBVAL = [
+    *["--nbval", "--nbval-current-env", "--nbval-cell-timeout", "60"],
+    *["-W", "ignore::DeprecationWarning"],
+]
+
+
+class Stage(NamedTuple):
+    """One check: its name, what it shows, the commands that must succeed."""
+
+    name: str
+    shows: str
+    commands: list[list[str]]
+
+
+def ruff(fix: bool = False) -> list[list[str]]:
+    """Return the style commands, mending or only looking."""
+    check, form = (["--fix"], []) if fix else ([], ["--check"])
+    return [
+        [PYTHON, "-m", "ruff", "check", "--quiet", *check, *CODE],
+        [PYTHON, "-m", "ruff", "format", "--quiet", *form, *CODE],
+    ]
+
+
+def stages() -> list[Stage]:
+    """List all checks in order."""
+    tool = [PYTHON, "tools/notebooks.py", "--check"], [PYTHON, "tools/numbers.py", "--check"]
+    separate = ["tests/test_layers.py", "tests/test_stamps.py", "tests/book", "tests/live"]
+    apart = [f"--ignore={name}" for name in separate]
+    browser = [name for name in ("tests/book", "tests/live") if list((ROOT / name).glob("test_*"))]
+    notebooks = [name for name in ("notebooks",) if list((ROOT / name).rglob("*.ipynb"))]
+    return [
+        Stage("lint", "style and format (ruff)", ruff()),
+        Stage("types", "types of pfkit (mypy)", [[PYTHON, "-m", "mypy"]]),
+        Stage("layers", "who may import whom", [[*PYTEST, "tests/test_layers.py"]]),
+        Stage("unit", "unit, property and oracle tests", [[*PYTEST, *TWO_CORES, "tests", *apart]]),
+        Stage(
+            "stamps", "stored outputs are up to date", [[*PYTEST, "tests/test_stamps.py"], *tool]
+        ),
+        Stage(
+            "notebooks",
+            "executing each notebook gives its stored outputs (nbval, strict)",
+            [[*PYTEST, *TWO_CORES, *NBVAL, *notebooks]] if notebooks else [],
+        ),
+        Stage("book", "the book builds without a warning", [[PYTHON, "tools/book.py", "book"]]),
+        Stage(
+            "pages",
+            "every page in a browser, over http and from disk",
+            [[*PYTEST, *TWO_CORES, "-rs", *browser]] if browser else [],
+        ),
+    ]
+
+
+def run(stage: Stage) -> tuple[bool, float]:
+    """Run one check; return whether it passed and how long it took."""
+    say(f"{stage.name}: {stage.shows}")
+    start = time.monotonic()
+    environment = {**os.environ, "MPLBACKEND": "agg", "PYTHONHASHSEED": "0"}
+    if stage.name == "notebooks":
+        environment["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
+    passed = all(
+        subprocess.call(command, cwd=ROOT, env=environment) == 0 for command in stage.commands
+    )
+    return passed, time.monotonic() - start
+
+
+def run_all(chosen: list[Stage], keep_going: bool) -> bool:
+    """Run checks in order, print the summary, and say whether all passed."""
+    lines = []
+    good = True
+    for stage in chosen:
+        if not good and not keep_going:
+            lines.append(f"  {stage.name:10s} not run")
+            continue
+        passed, seconds = run(stage)
+        good &= passed
+        lines.append(f"  {stage.name:10s} {'passed' if passed else 'FAILED'} {seconds:6.0f} s")
+    say("summary")
+    print("\n".join(lines))
+    failed = [line.split()[0] for line in lines if "FAILED" in line]
+    if failed:
+        say(f"failed: {', '.join(failed)}; again with: make test ARGS='--only {failed[0]}'")
+    return good
+
+
+def main() -> int:
+    """Parse the command line and run it."""
+    parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
+    parser.add_argument("command", choices=("test", "lint"))
+    parser.add_argument("--fix", action="store_true", help="lint: mend what can be mended")
+    parser.add_argument("--keep-going", action="store_true", help="run all stages, fail at the end")
+    parser.add_argument("--only", nargs="+", metavar="STAGE", help="run only these stages")
+    parser.add_argument("--list", action="store_true", help="list the stages")
+    options = parser.parse_args()
+    everything = stages()
+    if options.command == "lint":
+        return 0 if run(Stage("lint", "style and format (ruff)", ruff(options.fix)))[0] else 1
+    names = [stage.name for stage in everything]
+    unknown = set(options.only or []) - set(names)
+    if unknown or options.list:
+        print("\n".join(f"{stage.name:10s} {stage.shows}" for stage in everything))
+        return 2 if unknown else 0
+    chosen = [stage for stage in everything if stage.name in (options.only or names)]
+    return 0 if run_all(chosen, options.keep_going) else 1
+
+
+if __name__ == "__main__":
+    sys.exit(main())
