@@ -33,6 +33,7 @@ from pfkit.resampling import SCHEMES, multinomial, residual, stratified, systema
 # L2: models, answers
 from pfkit.motion import MotionModel, VelocityMotion, drive_arc
 from pfkit.odometry_motion import OdometryMotion, odometry_control
+from pfkit.targets import CircleTarget, FixedTarget, HeadingTarget, LineTarget
 from pfkit.wheels import Bicycle, DifferentialDrive
 from pfkit.sensors import (
     Compass,
@@ -50,6 +51,23 @@ from pfkit.estimators import covariance, mean_pose
 # L3: filters
 from pfkit.filters import History, Info, predict, resample, run, select, step, update
 from pfkit.histogram import door_likelihood, predict_1d, shift_kernel, update_1d
+from pfkit.posegrid import (
+    PoseGrid,
+    gaussian_grid,
+    predict_by_convolution,
+    predict_by_transport,
+    run_grid,
+    uniform_grid,
+    update_grid,
+)
+from pfkit.oracle import (
+    Divergence,
+    GridNotConverged,
+    converged_grid,
+    equal_mass_boxes,
+    kl_divergence,
+    refinement,
+)
 
 # L4: simulation, data, judgement
 from pfkit import worlds
