@@ -1,0 +1,168 @@
+/* Brings the explorables of a book page to life. Loaded, with its two companions render.js and
+   explorable.js, only by pages that have one; see book/_ext/live_page.py. */
+(function (PF) {
+  "use strict";
+
+  const me = document.currentScript;
+  const BASE = me.src.replace(/[^/]*$/, "");
+  const VERSION = me.dataset.version || "0";
+  const LIVE = me.dataset.live === "1";
+  const FROM_FOLDER = location.protocol === "file:";
+  PF.base = BASE;
+
+  PF.loadScript = function (name) {
+    return new Promise((resolve, reject) => {
+      const script = document.createElement("script");
+      script.src = `${BASE}${name}?v=${VERSION}`;
+      script.onload = resolve;
+      script.onerror = () => reject(new Error(`${name} could not be loaded`));
+      document.head.append(script);
+    });
+  };
+
+  async function unpack(text) {
+    const bytes = Uint8Array.from(atob(text), (c) => c.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("gzip"));
+    return new Response(stream).arrayBuffer();
+  }
+
+  let bundle;
+  function loadBundle() {
+    bundle = bundle || PF.loadScript("bundle.js").catch((e) => { bundle = null; throw e; });
+    return bundle;
+  }
+
+  /* One worker with Python in it. `ask` sends a request and waits for its answer. */
+  PF.Python = class {
+    constructor(kind) {
+      this.kind = kind;
+      this.waiting = new Map();
+      this.next = 1;
+      this.listeners = new Set();
+    }
+
+    onProgress(listener) { this.listeners.add(listener); }
+
+    progress(text, fraction) { for (const l of this.listeners) l(text, fraction); }
+
+    start() {
+      this.ready = this.ready || this.boot().catch((e) => { this.stop(); throw e; });
+      return this.ready;
+    }
+
+    async boot() {
+      if (!LIVE) throw new Error("this copy of the book was built without the parts that compute");
+      const began = performance.now();
+      const message = { kind: this.kind, base: BASE, version: VERSION };
+      let url = `${BASE}worker.js?v=${VERSION}`;
+      if (FROM_FOLDER) {
+        this.progress("Reading Python from the folder", 0.05);
+        await loadBundle();
+        const names = Object.keys(window.pfBundle);
+        message.files = {};
+        for (const [k, name] of names.entries()) {
+          message.files[name] = await unpack(window.pfBundle[name]);
+          this.progress("Unpacking Python", 0.1 + (0.6 * (k + 1)) / names.length);
+        }
+        url = URL.createObjectURL(new Blob([message.files["worker.js"]], { type: "text/javascript" }));
+      }
+      this.worker = new Worker(url);
+      this.worker.onmessage = ({ data }) => {
+        if (data.progress) return this.progress(data.progress, data.fraction);
+        const waiting = this.waiting.get(data.id);
+        this.waiting.delete(data.id);
+        if (!waiting) return;
+        if (data.error !== undefined) waiting.reject(new Error(data.error));
+        else waiting.resolve(data.ok);
+      };
+      this.worker.onerror = (e) => {
+        for (const w of this.waiting.values()) w.reject(new Error(e.message || "Python stopped"));
+        this.waiting.clear();
+      };
+      await this.send({ do: "boot", ...message }, Object.values(message.files || {}));
+      this.bootMs = performance.now() - began;
+    }
+
+    send(message, transfer) {
+      return new Promise((resolve, reject) => {
+        const id = this.next++;
+        this.waiting.set(id, { resolve, reject });
+        this.worker.postMessage({ id, ...message }, transfer || []);
+      });
+    }
+
+    async ask(message) {
+      await this.start();
+      return this.send(message);
+    }
+
+    /* The only way to end a loop in Python: end the worker. The next request boots another. */
+    stop() {
+      if (this.worker) this.worker.terminate();
+      for (const w of this.waiting.values()) w.reject(new Error("stopped"));
+      this.waiting.clear();
+      this.ready = this.worker = null;
+    }
+  };
+
+  const scenes = new PF.Python("scenes");
+  async function engine(progress) {
+    scenes.onProgress(progress);
+    await scenes.start();
+    scenes.listeners.delete(progress);
+    return {
+      open: async (key, name, panel, seed) =>
+        JSON.parse(await scenes.ask({ do: "open", key, name, panel, seed })),
+      run: async (key, operations) => {
+        const answer = await scenes.ask({ do: "run", key, operations: JSON.stringify(operations) });
+        return { ...answer, report: JSON.parse(answer.report) };
+      },
+    };
+  }
+
+  function stateFromAddress() {
+    if (!location.hash.startsWith("#run=") || location.hash.length > 20000) return null;
+    try {
+      const state = JSON.parse(decodeURIComponent(location.hash.slice(5)));
+      return state && typeof state === "object" ? state : null;
+    } catch {
+      return null;
+    }
+  }
+
+  async function upgrade(root, k) {
+    const key = root.dataset.recording;
+    await PF.loadScript(`runs/${key}.js`);
+    const recording = window.pfRecordings[key];
+    const explorable = new PF.Explorable(root, {
+      about: recording.about, seed: recording.about.seed, values: recording.values, recording,
+      key: "s" + k, id: root.id, link: true, engine,
+      missions: root.querySelector(".pf-missions"),
+    });
+    root.pfExplorable = explorable;
+    const state = stateFromAddress();
+    if (state && state.id === root.id) {
+      root.scrollIntoView();
+      explorable.open(state);
+    }
+  }
+
+  function start() {
+    const roots = [...document.querySelectorAll(".pf-explorable[data-recording]")];
+    const near = new IntersectionObserver((entries) => {
+      for (const e of entries) {
+        if (!e.isIntersecting) continue;
+        near.unobserve(e.target);
+        upgrade(e.target, roots.indexOf(e.target));
+      }
+    }, { rootMargin: "600px" });
+    const wanted = stateFromAddress();
+    for (const [k, root] of roots.entries()) {
+      if (wanted && wanted.id === root.id) upgrade(root, k);
+      else near.observe(root);
+    }
+  }
+  PF.scenes = scenes;
+  if (document.readyState === "loading") document.addEventListener("DOMContentLoaded", start);
+  else start();
+})((globalThis.PF = globalThis.PF || {}));

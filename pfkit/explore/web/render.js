@@ -1,0 +1,438 @@
+/* Draws any scene: the counterpart of pfkit/explore/pen.py, which documents the array.
+   Also decodes recorded runs (pfkit/explore/record.py). A classic script: it adds PF.* and needs
+   nothing else, so that the same file serves the book, a folder on disk, and Jupyter. */
+(function (PF) {
+  "use strict";
+
+  const STYLES = ["ink", "muted", "grid", "particle", "truth", "estimate", "landmark", "ray",
+    "accent", "good", "bad", "target", "proposal", "wall", "c1", "c2", "c3", "c4", "c5", "paper"];
+  const SHAPES = ["circle", "square", "diamond", "cross", "triangle", "plus", "star"];
+  const LEAD = { 2: 1, 4: 1, 9: 2, 10: 2, 11: 6, 14: 1 };
+  const ROWS = { 2: 2, 3: 3, 4: 4, 9: 5, 10: 2, 11: 1, 14: 3 };
+  const EXACT = new Set([1, 5, 6, 7, 8, 12, 13, 15]);
+  const LIGHT = {
+    ink: "#1d2733", muted: "#5b6775", grid: "#cfd6de", particle: "#2f6fbf", truth: "#15803d",
+    estimate: "#c2410c", landmark: "#6d28d9", ray: "#b7791f", accent: "#2563a8", good: "#15803d",
+    bad: "#b91c1c", target: "#15803d", proposal: "#b45309", wall: "#64717f", c1: "#2563a8",
+    c2: "#b45309", c3: "#15803d", c4: "#9d3a8f", c5: "#64717f", paper: "#fbfcfd",
+  };
+  const DARK = {
+    ink: "#eef2f6", muted: "#a7b3c0", grid: "#3a4653", particle: "#7db4f5", truth: "#63d68c",
+    estimate: "#ff9d5c", landmark: "#c4a5ff", ray: "#e9c46a", accent: "#7db4f5", good: "#63d68c",
+    bad: "#ff8a8a", target: "#63d68c", proposal: "#ffb65c", wall: "#8493a3", c1: "#7db4f5",
+    c2: "#ffb65c", c3: "#63d68c", c4: "#f0a0e2", c5: "#a7b3c0", paper: "#12181f",
+  };
+  const FONT = "ui-sans-serif, system-ui, -apple-system, 'Segoe UI', Roboto, Arial, sans-serif";
+
+  function rgb(hex) {
+    const n = parseInt(hex.slice(1), 16);
+    return [n >> 16, (n >> 8) & 255, n & 255];
+  }
+
+  /* Is this element shown on a dark page? Asks the colour that is really behind it. */
+  PF.isDark = function (element) {
+    for (let e = element; e; e = e.parentElement) {
+      const m = getComputedStyle(e).backgroundColor.match(/[\d.]+/g);
+      if (m && (m.length < 4 || +m[3] > 0.5)) {
+        return 0.2126 * m[0] + 0.7152 * m[1] + 0.0722 * m[2] < 128;
+      }
+    }
+    return matchMedia("(prefers-color-scheme: dark)").matches;
+  };
+
+  PF.Renderer = class {
+    constructor(canvas, size) {
+      this.canvas = canvas;
+      this.size = size;
+      this.context = canvas.getContext("2d");
+      this.dark = false;
+      this.last = null;
+      this.first = null;
+      this.scratch = document.createElement("canvas");
+    }
+
+    /* Match the backing store to the size on the page; call again when that changes. */
+    resize(width) {
+      const narrow = width < 520;
+      const height = Math.round(width * (this.size[1] / this.size[0]) * (narrow ? 1.35 : 1));
+      const ratio = Math.min(window.devicePixelRatio || 1, 2);
+      this.width = width;
+      this.height = height;
+      this.ratio = ratio;
+      this.fontScale = narrow ? 0.92 : 1;
+      this.canvas.style.height = height + "px";
+      this.canvas.width = Math.round(width * ratio);
+      this.canvas.height = Math.round(height * ratio);
+      if (this.last) this.draw(this.last);
+    }
+
+    color(style) {
+      return (this.dark ? DARK : LIGHT)[STYLES[style]];
+    }
+
+    draw(data) {
+      this.last = data;
+      this.first = null;
+      const c = this.context;
+      c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
+      c.fillStyle = (this.dark ? DARK : LIGHT).paper;
+      c.fillRect(0, 0, this.width, this.height);
+      c.lineCap = "round";
+      c.lineJoin = "round";
+      for (let i = 0; i + 3 <= data.length;) {
+        const op = data[i], style = data[i + 1], n = data[i + 2];
+        const d = data.subarray(i + 3, i + 3 + n);
+        c.strokeStyle = c.fillStyle = this.color(style);
+        c.globalAlpha = 1;
+        if (op === 1) this.view(d);
+        else this[NAMES[op]](d, style);
+        i += 3 + n;
+      }
+      c.globalAlpha = 1;
+    }
+
+    view(d) {
+      const [l, b, w, h, x0, x1, y0, y1, equal, box] = d;
+      let left = l * this.width, width = w * this.width;
+      let bottom = (1 - b) * this.height, height = h * this.height;
+      let sx = width / (x1 - x0), sy = height / (y1 - y0);
+      if (equal) {
+        const s = Math.min(sx, sy);
+        left += (width - s * (x1 - x0)) / 2;
+        bottom -= (height - s * (y1 - y0)) / 2;
+        sx = sy = s;
+        width = s * (x1 - x0);
+        height = s * (y1 - y0);
+      }
+      this.v = { left, bottom, width, height, sx, sy, x0, x1, y0, y1 };
+      if (!this.first) this.first = this.v;
+      if (box) {
+        this.context.strokeStyle = (this.dark ? DARK : LIGHT).grid;
+        this.context.lineWidth = 1;
+        this.context.strokeRect(Math.round(left) + 0.5, Math.round(bottom - height) + 0.5,
+          Math.round(width), Math.round(height));
+      }
+    }
+
+    X(x) { return this.v.left + (x - this.v.x0) * this.v.sx; }
+    Y(y) { return this.v.bottom - (y - this.v.y0) * this.v.sy; }
+
+    /* Data coordinates of a place on the page, in the first view. */
+    locate(clientX, clientY) {
+      const box = this.canvas.getBoundingClientRect(), v = this.first;
+      if (!v) return null;
+      return [v.x0 + (clientX - box.left - v.left) / v.sx,
+        v.y0 - (clientY - box.top - v.bottom) / v.sy];
+    }
+
+    points(d, style) {
+      const n = (d.length - 1) / 2, size = d[0], c = this.context;
+      if (n > 1500) return this.splat(d, style, n);
+      c.globalAlpha = Math.max(0.25, Math.min(0.85, 90 / Math.sqrt(n * 60 + 1)));
+      c.beginPath();
+      for (let k = 1; k <= n; k++) {
+        const x = this.X(d[k]), y = this.Y(d[k + n]);
+        c.moveTo(x + size / 2, y);
+        c.arc(x, y, size / 2, 0, 7);
+      }
+      c.fill();
+    }
+
+    /* Large clouds go to pixels directly: one pass, no path, and density becomes tone. */
+    splat(d, style, n) {
+      const v = this.v, r = this.ratio, c = this.context;
+      const W = Math.max(1, Math.round(v.width * r)), H = Math.max(1, Math.round(v.height * r));
+      const s = this.scratch;
+      if (s.width !== W || s.height !== H) { s.width = W; s.height = H; this.density = null; }
+      const sc = s.getContext("2d");
+      if (!this.density || this.density.length !== W * H) {
+        this.density = new Float32Array(W * H);
+        this.pixels = sc.createImageData(W, H);
+      }
+      const density = this.density, out = this.pixels.data;
+      density.fill(0);
+      const gain = Math.max(0.1, Math.min(0.6, 60 / Math.sqrt(n) - 0.1));
+      const side = Math.max(1, Math.round(r * 1.6));
+      for (let k = 1; k <= n; k++) {
+        const px = Math.round((d[k] - v.x0) * v.sx * r - side / 2);
+        const py = Math.round((v.y1 - d[k + n]) * v.sy * r - side / 2);
+        if (px < 0 || py < 0 || px + side > W || py + side > H) continue;
+        for (let j = 0; j < side; j++) {
+          const row = (py + j) * W + px;
+          for (let i = 0; i < side; i++) density[row + i] += gain;
+        }
+      }
+      const [R, G, B] = rgb(this.color(style));
+      for (let p = 0, q = 0; p < density.length; p++, q += 4) {
+        const a = density[p];
+        out[q + 3] = a ? 255 * (1 - 1 / (1 + a * 1.6)) + 40 : 0;
+        out[q] = R; out[q + 1] = G; out[q + 2] = B;
+      }
+      sc.putImageData(this.pixels, 0, 0);
+      c.drawImage(s, v.left, v.bottom - v.height, v.width, v.height);
+    }
+
+    bubbles(d) {
+      const n = d.length / 3, c = this.context;
+      c.globalAlpha = 0.55;
+      c.beginPath();
+      for (let k = 0; k < n; k++) {
+        const r = d[k + 2 * n] / 2, x = this.X(d[k]), y = this.Y(d[k + n]);
+        c.moveTo(x + r, y);
+        c.arc(x, y, r, 0, 7);
+      }
+      c.fill();
+    }
+
+    segments(d) {
+      const n = (d.length - 1) / 4, c = this.context;
+      c.lineWidth = d[0];
+      c.beginPath();
+      for (let k = 1; k <= n; k++) {
+        c.moveTo(this.X(d[k]), this.Y(d[k + n]));
+        c.lineTo(this.X(d[k + 2 * n]), this.Y(d[k + 3 * n]));
+      }
+      c.stroke();
+    }
+
+    trace(d, lead) {
+      const n = (d.length - lead) / 2, c = this.context;
+      let down = false;
+      c.beginPath();
+      for (let k = lead; k < lead + n; k++) {
+        if (Number.isNaN(d[k]) || Number.isNaN(d[k + n])) { down = false; continue; }
+        if (down) c.lineTo(this.X(d[k]), this.Y(d[k + n]));
+        else c.moveTo(this.X(d[k]), this.Y(d[k + n]));
+        down = true;
+      }
+    }
+
+    line(d) {
+      const c = this.context;
+      c.lineWidth = d[0];
+      c.setLineDash(d[1] ? [d[1], d[1]] : []);
+      this.trace(d, 2);
+      c.stroke();
+      c.setLineDash([]);
+    }
+
+    area(d) {
+      this.context.globalAlpha = d[0];
+      this.trace(d, 1);
+      this.context.fill();
+    }
+
+    bars(d) {
+      const n = (d.length - 1) / 4, c = this.context;
+      c.globalAlpha = d[0];
+      for (let k = 1; k <= n; k++) {
+        const x0 = this.X(d[k]), x1 = this.X(d[k + n]);
+        const y0 = this.Y(d[k + 2 * n]), y1 = this.Y(d[k + 3 * n]);
+        c.fillRect(x0, y1, x1 - x0, y0 - y1);
+      }
+    }
+
+    robots(d, style) {
+      const n = (d.length - 1) / 3, c = this.context;
+      const r = Math.max(d[0] * this.v.sx, 5);
+      for (let k = 1; k <= n; k++) {
+        c.save();
+        c.translate(this.X(d[k]), this.Y(d[k + n]));
+        c.rotate(-d[k + 2 * n]);
+        c.globalAlpha = 1;
+        c.fillStyle = (this.dark ? DARK : LIGHT).paper;
+        c.strokeStyle = this.color(style);
+        c.lineWidth = 2;
+        c.beginPath();
+        c.arc(0, 0, r, 0, 7);
+        c.fill();
+        c.stroke();
+        c.fillStyle = this.color(style);
+        c.beginPath();
+        c.moveTo(r * 1.5, 0);
+        c.lineTo(-r * 0.35, r * 0.62);
+        c.lineTo(-r * 0.05, 0);
+        c.lineTo(-r * 0.35, -r * 0.62);
+        c.closePath();
+        c.fill();
+        c.restore();
+      }
+    }
+
+    ellipses(d) {
+      const n = (d.length - 2) / 5, c = this.context;
+      c.lineWidth = d[0];
+      c.setLineDash(d[1] ? [d[1], d[1]] : []);
+      for (let k = 2; k < 2 + n; k++) {
+        c.beginPath();
+        c.ellipse(this.X(d[k]), this.Y(d[k + n]), Math.abs(d[k + 2 * n] * this.v.sx),
+          Math.abs(d[k + 3 * n] * this.v.sy), -d[k + 4 * n], 0, 2 * Math.PI);
+        c.stroke();
+      }
+      c.setLineDash([]);
+    }
+
+    stems(d) {
+      const n = (d.length - 2) / 2, c = this.context, base = this.Y(d[0]);
+      c.lineWidth = 1.3;
+      c.globalAlpha = 0.75;
+      c.beginPath();
+      for (let k = 2; k < 2 + n; k++) {
+        const x = this.X(d[k]);
+        c.moveTo(x, base);
+        c.lineTo(x, this.Y(d[k + n]));
+      }
+      c.stroke();
+      c.globalAlpha = 1;
+      c.beginPath();
+      for (let k = 2; k < 2 + n; k++) {
+        const x = this.X(d[k]), y = this.Y(d[k + n]);
+        c.moveTo(x + d[1] / 2, y);
+        c.arc(x, y, d[1] / 2, 0, 7);
+      }
+      c.fill();
+    }
+
+    image(d, style) {
+      const [nx, ny, x0, x1, y0, y1] = d, cells = d.subarray(6);
+      const [R, G, B] = rgb(this.color(style));
+      const s = this.tile = this.tile || document.createElement("canvas");
+      s.width = nx;
+      s.height = ny;
+      const sc = s.getContext("2d"), pixels = sc.createImageData(nx, ny);
+      for (let j = 0; j < ny; j++) {
+        for (let i = 0; i < nx; i++) {
+          const q = 4 * ((ny - 1 - j) * nx + i);
+          pixels.data[q] = R;
+          pixels.data[q + 1] = G;
+          pixels.data[q + 2] = B;
+          pixels.data[q + 3] = 255 * Math.max(0, Math.min(1, cells[j * nx + i]));
+        }
+      }
+      sc.putImageData(pixels, 0, 0);
+      const c = this.context, X0 = this.X(x0), Y1 = this.Y(y1);
+      c.imageSmoothingEnabled = nx * ny > 400;
+      c.drawImage(s, X0, Y1, this.X(x1) - X0, this.Y(y0) - Y1);
+    }
+
+    text(d) {
+      const c = this.context;
+      c.font = `500 ${Math.max(10, d[2] * this.fontScale)}px ${FONT}`;
+      c.textAlign = d[3] < 0 ? "left" : d[3] > 0 ? "right" : "center";
+      c.textBaseline = "middle";
+      c.fillText(String.fromCodePoint(...d.subarray(4)), this.X(d[0]), this.Y(d[1]));
+    }
+
+    symbols(d) {
+      const n = (d.length - 2) / 2, c = this.context, r = d[1] / 2, shape = SHAPES[d[0]];
+      c.lineWidth = 2;
+      for (let k = 2; k < 2 + n; k++) {
+        const x = this.X(d[k]), y = this.Y(d[k + n]);
+        c.beginPath();
+        if (shape === "cross" || shape === "plus") {
+          const e = shape === "cross" ? r * 0.75 : 0, f = shape === "cross" ? r * 0.75 : r;
+          c.moveTo(x - f, y - e); c.lineTo(x + f, y + e);
+          c.moveTo(x + e, y - f); c.lineTo(x - e, y + f);
+          c.stroke();
+          continue;
+        }
+        if (shape === "circle") c.arc(x, y, r, 0, 7);
+        else {
+          const corners = { square: 4, diamond: 4, triangle: 3, star: 10 }[shape];
+          const turn = shape === "square" ? Math.PI / 4 : 0;
+          for (let j = 0; j < corners; j++) {
+            const a = turn + (2 * Math.PI * j) / corners - Math.PI / 2;
+            const q = shape === "star" && j % 2 ? r * 0.45 : shape === "square" ? r * 1.3 : r;
+            c.lineTo(x + q * Math.cos(a), y + q * Math.sin(a));
+          }
+          c.closePath();
+        }
+        c.fill();
+        c.strokeStyle = (this.dark ? DARK : LIGHT).paper;
+        c.lineWidth = 1;
+        c.stroke();
+        c.strokeStyle = c.fillStyle;
+      }
+    }
+
+    quills(d) {
+      const n = (d.length - 1) / 3, c = this.context, length = d[0];
+      c.lineWidth = 1;
+      c.globalAlpha = Math.max(0.2, Math.min(0.8, 60 / Math.sqrt(n * 60 + 1)));
+      c.beginPath();
+      for (let k = 1; k <= n; k++) {
+        const x = this.X(d[k]), y = this.Y(d[k + n]), a = d[k + 2 * n];
+        c.moveTo(x, y);
+        c.lineTo(x + length * Math.cos(a), y - length * Math.sin(a));
+      }
+      c.stroke();
+    }
+
+    ticks(d) {
+      const c = this.context, side = d[0];
+      c.font = `${11 * this.fontScale}px ${FONT}`;
+      c.lineWidth = 1;
+      c.textBaseline = side ? "middle" : "top";
+      c.textAlign = side ? "right" : "center";
+      c.beginPath();
+      for (let k = 1; k < d.length; k++) {
+        const label = String(+d[k].toPrecision(6)).replace("-", "\u2212");
+        if (side) {
+          const y = this.Y(d[k]), x = this.v.left;
+          c.moveTo(x - 4, y); c.lineTo(x, y);
+          c.fillText(label, x - 6, y);
+        } else {
+          const x = this.X(d[k]), y = this.v.bottom;
+          c.moveTo(x, y); c.lineTo(x, y + 4);
+          c.fillText(label, x, y + 6);
+        }
+      }
+      c.stroke();
+    }
+  };
+  const NAMES = ["", "view", "points", "bubbles", "segments", "line", "area", "bars", "robots",
+    "ellipses", "stems", "image", "text", "symbols", "quills", "ticks"];
+
+  /* ---- recorded runs ----------------------------------------------------------------------- */
+  async function inflate(text) {
+    const bytes = Uint8Array.from(atob(text), (ch) => ch.charCodeAt(0));
+    const stream = new Blob([bytes]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
+    return new Uint8Array(await new Response(stream).arrayBuffer());
+  }
+
+  function unplane(bytes, width) {
+    const n = bytes.length / width, out = new Uint8Array(bytes.length);
+    for (let b = 0; b < width; b++) {
+      for (let i = 0; i < n; i++) out[i * width + b] = bytes[b * n + i];
+    }
+    return out.buffer;
+  }
+
+  PF.decode = async function (recording) {
+    const heads = new Int32Array(unplane(await inflate(recording.heads), 4));
+    const floats = new Float32Array(unplane(await inflate(recording.floats), 4));
+    const deltas = new Int16Array(unplane(await inflate(recording.deltas), 2));
+    let h = 0, f = 0, d = 0;
+    return recording.frames.map(([nh, , , ticks, readouts, done]) => {
+      const out = [];
+      for (const end = h + nh; h < end; h += 3) {
+        const op = heads[h], n = heads[h + 2], lead = LEAD[op] || 0;
+        out.push(op, heads[h + 1], n);
+        if (EXACT.has(op) || n - lead < 24) {
+          for (let k = 0; k < n; k++) out.push(floats[f++]);
+          continue;
+        }
+        for (let k = 0; k < lead; k++) out.push(floats[f++]);
+        const rows = ROWS[op], length = (n - lead) / rows;
+        for (let r = 0; r < rows; r++) {
+          const low = floats[f++], scale = floats[f++];
+          for (let k = 0, level = 0; k < length; k++) {
+            level += deltas[d++];
+            out.push(low + scale * level);
+          }
+        }
+      }
+      return { drawing: Float32Array.from(out), report: { ticks, readouts, done } };
+    });
+  };
+})((globalThis.PF = globalThis.PF || {}));
