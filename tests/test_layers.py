@@ -34,6 +34,7 @@ LAYERS: dict[str, list[str]] = {
         "gaussian",
         "histogram",
         "posegrid",
+        "oracle",
         "tempering",
         "modes",
     ],

@@ -49,7 +49,7 @@ def ruff(fix: bool = False) -> list[list[str]]:
 
 def stages() -> list[Stage]:
     """List all checks in order."""
-    tool = [PYTHON, "tools/notebooks.py", "--check"], [PYTHON, "tools/numbers.py", "--check"]
+    tool = [PYTHON, "tools/notebooks.py", "--check"], [PYTHON, "tools/prose_numbers.py", "--check"]
     separate = ["tests/test_layers.py", "tests/test_stamps.py", "tests/book", "tests/live"]
     apart = [f"--ignore={name}" for name in separate]
     browser = [name for name in ("tests/book", "tests/live") if list((ROOT / name).glob("test_*"))]

@@ -175,7 +175,7 @@ def refresh(path: Path, timeout: int = 120) -> str:
         if noise := stderr_of(cell):
             raise RuntimeError(f"cell {cell.get('id')} writes to stderr: {noise[:200]}")
     notebook = normalise(notebook)
-    notebook["metadata"]["pfkit"] = {"files": files, "stamp": stamps.stamp(notebook, files)}
+    notebook["metadata"]["pfkit"] = {"files": files, "stamp": stamps.stamp(notebook, files, ROOT)}
     write(path, notebook)
     return f"{path.relative_to(ROOT)}: executed in {time.monotonic() - start:.1f} s"
 
