@@ -5,6 +5,7 @@
     test        run every check in order:  test [--keep-going] [--only STAGE ...] [--list]
     lint        style and format of the code (ruff); lint --fix mends what it can
     notebooks   execute the notebooks whose code, package or data changed:  notebooks [FILE ...]
+    numbers     compare the numbers in the prose with the cells:  numbers [--fill] [FILE ...]
     clean       remove what was built; clean --all also removes the environment and the caches
 
 The first call makes the environment .venv; nothing outside this folder is touched.
@@ -19,7 +20,15 @@ import sys
 
 from environment import PYTHON, ROOT, Stop, prepare, require_python, say
 
-NEEDS = {"book": "book", "serve": "book", "test": "all", "lint": "all", "notebooks": "all"}
+# command: the environment it needs, the tool that does it, what to tell the tool first
+COMMANDS = {
+    "book": ("book", "book", ["book"]),
+    "serve": ("book", "book", ["serve"]),
+    "test": ("all", "checks", ["test"]),
+    "lint": ("all", "checks", ["lint"]),
+    "notebooks": ("all", "notebooks", []),
+    "numbers": ("all", "prose_numbers", []),
+}
 
 
 def clean(*flags: str) -> None:
@@ -38,15 +47,14 @@ def main(arguments: list[str]) -> int:
     if command == "clean":
         clean(*rest)
         return 0
-    if command not in NEEDS:
+    if command not in COMMANDS:
         print(__doc__)
         return 0 if command in ("help", "-h", "--help") else 2
-    prepare(NEEDS[command])
-    tool = {"lint": "checks", "test": "checks", "notebooks": "notebooks"}.get(command, "book")
-    script = [str(PYTHON), str(ROOT / "tools" / (tool + ".py"))]
-    extra = [] if command == "notebooks" else [command]
+    kind, tool, first = COMMANDS[command]
+    prepare(kind)
+    script = [str(PYTHON), str(ROOT / "tools" / (tool + ".py")), *first, *rest]
     path = str(PYTHON.parent) + os.pathsep + os.environ.get("PATH", "")
-    return subprocess.call(script + extra + rest, cwd=str(ROOT), env={**os.environ, "PATH": path})
+    return subprocess.call(script, cwd=str(ROOT), env={**os.environ, "PATH": path})
 
 
 if __name__ == "__main__":
