@@ -29,6 +29,15 @@ from pfkit.particles import (
 from pfkit.log import Log, Step
 from pfkit.maps import LandmarkMap
 from pfkit.resampling import SCHEMES, multinomial, residual, stratified, systematic
+from pfkit.genealogy import (
+    Genealogy,
+    ancestry,
+    coalescence_time,
+    count_distinct,
+    drift_time,
+    founders,
+    offspring_z,
+)
 
 # L2: models, answers
 from pfkit.motion import MotionModel, VelocityMotion, drive_arc
@@ -44,6 +53,7 @@ from pfkit.sensors import (
     log_student,
 )
 from pfkit.landmark_sensors import Bearing, Range, RangeBearing
+from pfkit.association import MaximumLikelihood
 from pfkit.intermittent import Intermittent
 from pfkit.robust import Gate, OutlierMixture, Tempered
 from pfkit.estimators import covariance, mean_pose
@@ -74,14 +84,13 @@ from pfkit import worlds
 from pfkit.diagnostics import (
     dead_reckoning,
     heading_rmse,
-    hypothesis_mass,
-    offspring_z,
     pose_error,
     position_error,
     rmse,
     settle_time,
     trace,
 )
+from pfkit.symmetry import hypothesis_mass, images, symmetries
 from pfkit.faults import Outliers, Sight
 from pfkit.routes import PurePursuit, commands, odometry_along
 from pfkit.simulate import drive, sense, simulate_log

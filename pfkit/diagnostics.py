@@ -27,7 +27,6 @@ from pfkit.errors import (
     ParameterError,
     ShapeError,
     require_components,
-    require_count,
     require_finite,
     require_positive,
 )
@@ -35,8 +34,6 @@ from pfkit.filters import History
 from pfkit.geometry import wrap
 from pfkit.log import Log
 from pfkit.motion import MotionModel
-from pfkit.particles import Particles
-from pfkit.resampling import Resampler
 
 Array = NDArray[np.float64]
 
@@ -229,71 +226,3 @@ def trace(history: History) -> NDArray[np.void]:
     for name, column in columns.items():
         table[name] = column
     return table
-
-
-def hypothesis_mass(bel: Particles, poses: ArrayLike, radius: float, angle: float = np.pi) -> Array:
-    r"""How much of the belief lies near each of several candidate poses.
-
-    .. math:: \mu_h = \sum_m w_m\, [\,\|x_m - x_h\| < r
-                      \ \text{and}\ |\mathrm{wrap}(\theta_m - \theta_h)| \le a\,]
-
-    A hypothesis is *alive* while its mass is above some floor, say 1 %. In a symmetric world
-    the candidates are the truth and its mirror images under `worlds.symmetries`.
-
-    Parameters
-    ----------
-    bel : Particles with state (3, M) or (3, B, M)
-    poses : array_like (3, H), or (3, H, B) with different candidates per run
-    radius : float, > 0, metres
-    angle : float, > 0, radians
-        Largest heading difference; pi ignores the heading.
-
-    Returns
-    -------
-    array (H,) or (H, B), between 0 and 1
-    """
-    poses = require_finite("poses", require_components("poses", poses, 3))
-    require_positive("radius", radius)
-    require_positive("angle", angle)
-    if poses.ndim not in (2, bel.state.ndim):
-        raise ShapeError(f"poses must be (3, H), or (3, H, B) for a batch, got {poses.shape}")
-    missing = bel.state.ndim - poses.ndim + 1
-    candidates = poses.reshape(poses.shape + (1,) * missing)
-    dx, dy, turn = bel.state[:3, None] - candidates
-    near = (dx * dx + dy * dy < radius * radius) & (np.abs(wrap(turn)) <= angle)
-    return np.sum(near * bel.w, axis=-1)
-
-
-def offspring_z(
-    scheme: Resampler,
-    w: ArrayLike,
-    rng: np.random.Generator,
-    draws: int = 2000,
-    n: int | None = None,
-) -> Array:
-    r"""Is a resampling scheme unbiased? One z-score per particle.
-
-    .. math:: z_m = \frac{\bar N_m - n w_m}{s_m / \sqrt{draws}}
-
-    An unbiased scheme gives standard normal scores; a biased one grows with sqrt(draws).
-
-    Parameters
-    ----------
-    scheme : Resampler
-    w : array_like (M,), non-negative; need not sum to one
-    rng : numpy.random.Generator
-    draws : int, how often the scheme is called
-    n : int, optional, copies per call; M if left out
-
-    Returns
-    -------
-    array (M,). A count that never varies has z = 0 if it is right and infinity if it is not.
-    """
-    w = require_finite("w", w)
-    draws, n = require_count("draws", draws, 2), w.size if n is None else require_count("n", n)
-    counts = np.stack([np.bincount(scheme(w, rng, n), minlength=w.size) for _ in range(draws)])
-    excess = counts.mean(axis=0) - n * w / w.sum()
-    excess[np.abs(excess) < 1e-9 * n] = 0.0
-    error = counts.std(axis=0, ddof=1) / np.sqrt(draws)
-    with np.errstate(divide="ignore", invalid="ignore"):
-        return np.where(excess == 0, 0.0, excess / error)

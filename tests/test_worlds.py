@@ -1,0 +1,64 @@
+"""The worlds are what their docstrings promise."""
+
+import numpy as np
+import pytest
+
+import pfkit as pf
+from pfkit import worlds
+
+STILL = pf.VelocityMotion((0.0,) * 4)
+
+
+def test_the_arena_route_closes_and_stays_inside():
+    _, truth = pf.drive(worlds.ARENA_START, worlds.arena_route(), STILL, np.random.default_rng())
+    np.testing.assert_allclose(truth[:, -1], worlds.ARENA_START, atol=1e-9)
+    assert worlds.arena().contains(*truth[:2]).all()
+
+
+@pytest.mark.parametrize(
+    ("world", "L"),
+    [
+        (worlds.square(), 4),
+        (worlds.broken_square(), 5),
+        (worlds.pentagon(10), 10),
+        (worlds.pentagon(40), 40),
+        (worlds.six_beacons(), 6),
+        (worlds.one_landmark(), 1),
+    ],
+)
+def test_landmarks_are_counted_and_apart(world, L):
+    assert len(world) == L
+    points = world.positions[0] + 1j * world.positions[1]
+    gaps = np.abs(points[:, None] - points) + 1e9 * np.eye(L)
+    assert gaps.min() > 0.5
+
+
+def test_other_pentagons_are_refused():
+    with pytest.raises(pf.ParameterError, match="10 or 40"):
+        worlds.pentagon(12)
+
+
+def test_the_fifth_landmark_comes_into_view_late():
+    driver = pf.PurePursuit(worlds.BROKEN_SQUARE_ROUTE, v=1.0, dt=0.25, closed=False)
+    start = worlds.BROKEN_SQUARE_START
+    _, truth = pf.drive(start, driver, STILL, np.random.default_rng(), steps=250)
+    seen = pf.Sight(worlds.broken_square(), r_max=6.0)(truth)  # (K, T)
+    first = np.argmax(seen[4])
+    assert seen[4].any() and first > 0.8 * 230
+    assert seen[:4].any(axis=0)[:first].mean() > 0.5  # until then the square is often in view
+
+
+def test_the_circle_closes_and_keeps_its_distance():
+    u = worlds.circle_route()
+    _, truth = pf.drive(worlds.CIRCLE_START, u, STILL, np.random.default_rng())
+    np.testing.assert_allclose(truth[:, -1], worlds.CIRCLE_START, atol=1e-9)
+    np.testing.assert_allclose(np.hypot(*(truth[:2] - 10)), 5.0)
+    assert u[0, 0] == pytest.approx(0.5, rel=0.01)
+    with pytest.raises(pf.ParameterError):
+        worlds.circle_route(v=0)
+
+
+def test_the_first_step_of_the_walk_through():
+    u = np.array([[np.sqrt(2)], [0.0], [1.0]])
+    _, truth = pf.drive(worlds.SIX_BEACONS_START, u, STILL, np.random.default_rng())
+    np.testing.assert_allclose(truth[:, 0], [8.0, 8.0, np.pi / 4])
