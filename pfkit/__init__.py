@@ -61,15 +61,8 @@ from pfkit.estimators import covariance, mean_pose
 # L3: filters
 from pfkit.filters import History, Info, predict, resample, run, select, step, update
 from pfkit.histogram import door_likelihood, predict_1d, shift_kernel, update_1d
-from pfkit.posegrid import (
-    PoseGrid,
-    gaussian_grid,
-    predict_by_convolution,
-    predict_by_transport,
-    run_grid,
-    uniform_grid,
-    update_grid,
-)
+from pfkit.posegrid import PoseGrid, gaussian_grid, uniform_grid
+from pfkit.gridfilter import predict_by_convolution, predict_by_transport, run_grid, update_grid
 from pfkit.oracle import (
     Divergence,
     GridNotConverged,
@@ -78,6 +71,16 @@ from pfkit.oracle import (
     kl_divergence,
     refinement,
 )
+from pfkit.gaussian import (
+    Gaussian,
+    gaussian_predict,
+    gaussian_update,
+    kalman_predict,
+    kalman_update,
+    linearise,
+    unscented,
+)
+from pfkit.smoother import GaussianHistory, rts_smooth, run_gaussian
 
 # L4: simulation, data, judgement
 from pfkit import worlds

@@ -86,9 +86,11 @@ class Sensor:
     """Base of all sensors: the density of one measurement, summed over K of them.
 
     A subclass sets `components` and defines ``log_density(zk, pose)`` for one column zk of z.
+    `angles` names the rows of z that are angles, for whoever subtracts measurements.
     """
 
     components: ClassVar[int]
+    angles: ClassVar[tuple[int, ...]] = ()
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log density of one measurement zk (n, ...) at poses (3, ...): shape (...)."""
@@ -153,7 +155,8 @@ class Position(Sensor):
     def __post_init__(self) -> None:
         if (self.sigma is None) == (self.Sigma is None):
             raise ParameterError(
-                "Position needs sigma (deviations) or Sigma (covariance), not both"
+                "Position needs either sigma (deviations) or Sigma (covariance), "
+                f"got sigma = {self.sigma!r} and Sigma = {self.Sigma!r}"
             )
         if self.Sigma is None:
             sigma = require_positive("sigma", self.sigma)
@@ -217,6 +220,7 @@ class Compass(Sensor):
     bias: float = 0.0
     nu: float = math.inf
     components: ClassVar[int] = 1
+    angles: ClassVar[tuple[int, ...]] = (0,)
 
     def __post_init__(self) -> None:
         require_positive("sigma_theta", self.sigma_theta)

@@ -1,0 +1,101 @@
+r"""Data association: which landmark was it?
+
+A measurement of a landmark with a name finds its place in the map by itself: *known
+association*, what all landmark sensors assume. Without a name each measurement must be
+matched to a landmark first. Maximum likelihood matches it to the one that explains it best,
+
+.. math:: \hat c_k = \arg\max_c\; p(z_k \mid x, m_c), \qquad
+          p(z_k \mid x) \leftarrow p(z_k \mid x, m_{\hat c_k}) .
+
+A Kalman filter decides once, for its one guess of the pose, and a wrong match is for good. In
+a particle filter every particle decides for itself: those that match wrongly predict the next
+measurements badly and die out. So the set as a whole keeps several matchings alive for a while.
+
+The price is K times L densities per particle instead of K, and a likelihood with more modes: a
+pose one landmark further on explains a row of equal posts nearly as well.
+
+To ignore what fits no landmark, put a gate about it:
+``Gate(MaximumLikelihood(sensor), threshold)``.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pfkit.errors import DataError, ParameterError, require_components, require_finite
+from pfkit.landmark_sensors import Bearing, Range, RangeBearing
+from pfkit.sensors import Sensor
+
+Array = NDArray[np.float64]
+
+
+@dataclass(frozen=True)
+class MaximumLikelihood(Sensor):
+    """Measure landmarks without names: the rows of `sensor` except its last, the identity.
+
+    Parameters
+    ----------
+    sensor : Range, Bearing or RangeBearing
+        The model for a landmark once it is known, and the map.
+
+    Raises
+    ------
+    ParameterError
+        If the sensor does not measure landmarks by identity.
+
+    Notes
+    -----
+    The likelihood is a maximum over landmarks, so as a function of z it integrates to more than
+    one; the log evidence is too large, by at most log L per measurement.
+    Source: Probabilistic Robotics, section 7.5 and Table 7.3, for each particle by itself.
+    """
+
+    sensor: Sensor
+
+    def __post_init__(self) -> None:
+        if not isinstance(self.sensor, Range | Bearing | RangeBearing):
+            raise ParameterError(
+                f"MaximumLikelihood needs Range, Bearing or RangeBearing, got {self.sensor!r:.80}; "
+                "put robust wrappers about it, not into it"
+            )
+
+    @property
+    def components(self) -> int:  # type: ignore[override]
+        """Rows of a measurement: those of the sensor without the identity."""
+        return self.sensor.components - 1
+
+    def expected(self, pose: Array, **which: Any) -> Array:
+        """Noise-free measurements, without their names: (n, K, ...)."""
+        return self.sensor.expected(pose, **which)[:-1]  # type: ignore[attr-defined]
+
+    def sample(self, pose: Array, rng: np.random.Generator, **which: Any) -> Array:
+        """Noisy measurements, without their names: (n, K, ...)."""
+        return self.sensor.sample(pose, rng, **which)[:-1]  # type: ignore[attr-defined]
+
+    def log_density(self, zk: Array, pose: Array) -> Array:
+        """Log density under the landmark that explains zk best, at each pose: shape (...)."""
+        return self._best(zk, pose)[0]
+
+    def associate(self, z: ArrayLike, pose: Array) -> NDArray[np.int64]:
+        """The landmark that each pose finds in each measurement: z (n, K) -> ids (K, ...)."""
+        z = require_finite("z", require_components("z", z, self.components), DataError)
+        return np.stack([self._best(z[:, k], pose)[1] for k in range(z.shape[1])])
+
+    def _best(self, zk: Array, pose: Array) -> tuple[Array, NDArray[np.int64]]:
+        """The largest log density over the landmarks, and whose it is; of equals the first."""
+        ids = self.sensor.world.ids  # type: ignore[attr-defined]
+        best = self._given(ids[0], zk, pose)
+        who = np.full(best.shape, ids[0], dtype=np.int64)
+        for s in ids[1:]:
+            log_p = self._given(s, zk, pose)
+            closer = log_p > best
+            best, who = np.where(closer, log_p, best), np.where(closer, s, who)
+        return best, who
+
+    def _given(self, s: np.int64, zk: Array, pose: Array) -> Array:
+        named = np.concatenate((zk, np.full_like(zk[:1], s)))
+        return np.asarray(self.sensor.log_density(named, pose))
