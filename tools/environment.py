@@ -11,6 +11,7 @@ Python 3.7, so that a wrong Python gets a clear line and not a syntax error.
 from __future__ import annotations
 
 import hashlib
+import json
 import os
 import subprocess
 import sys
@@ -45,10 +46,14 @@ def require_python() -> None:
 
 
 def fingerprint(kind: str) -> str:
-    """Hash what an environment is made from: its lock file, pyproject.toml, Python's version."""
-    digest = hashlib.sha256(THIS.encode())
-    for path in (LOCKS[kind], ROOT / "pyproject.toml"):
-        digest.update(path.read_bytes().replace(b"\r\n", b"\n"))
+    """Hash what an environment is made from: lock file, Python, what pip reads of pyproject.toml."""
+    import tomllib
+
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+    tools = project.get("tool", {}).get("setuptools", {})
+    read_by_pip = [project["project"], project["build-system"], tools]
+    digest = hashlib.sha256(THIS.encode() + json.dumps(read_by_pip, sort_keys=True).encode())
+    digest.update(LOCKS[kind].read_bytes().replace(b"\r\n", b"\n"))
     return digest.hexdigest()
 
 
