@@ -38,12 +38,17 @@ class UnknownLandmarkError(PfkitError):
     """A measurement names a landmark that the map does not have."""
 
 
-def require_finite(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
-    """Return `value` as a float array; raise `error` if it is not numeric and finite."""
+def as_numbers(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
+    """Return `value` as a float array; raise `error` if it does not consist of numbers."""
     try:
-        array = np.asarray(value, dtype=float)
+        return np.asarray(value, dtype=float)
     except (TypeError, ValueError):
         raise error(f"{name} must be numbers, got {value!r:.80}; pass floats or an array") from None
+
+
+def require_finite(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
+    """Return `value` as a float array; raise `error` if it is not numeric and finite."""
+    array = as_numbers(name, value, error)
     if not np.isfinite(array).all():
         bad = array[~np.isfinite(array)].flat[0]
         raise error(f"{name} must be finite, got {bad}; remove or repair that value")
@@ -90,13 +95,29 @@ def require_shape(name: str, value: Shape) -> tuple[int, ...]:
 
 def require_components(name: str, value: Any, n: int) -> np.ndarray:
     """Return `value` as a float array whose first axis has length `n`; else `ShapeError`."""
-    try:
-        array = np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise ShapeError(f"{name} must be an array of numbers, got {value!r:.80}") from None
+    array = as_numbers(name, value, ShapeError)
     if array.ndim == 0 or array.shape[0] != n:
         hint = "; transpose it" if array.ndim == 2 and array.shape[1] == n else ""
         raise ShapeError(
             f"{name} must have its {n} components first, shape ({n}, ...), got {array.shape}{hint}"
         )
     return array
+
+
+def require_rng(rng: Any) -> None:
+    """Raise `ParameterError` unless `rng` is (or behaves as) a numpy.random.Generator."""
+    if not hasattr(rng, "spawn"):  # what a Generator has and neither a seed nor np.random has
+        raise ParameterError(
+            f"rng must be a numpy.random.Generator, got {rng!r:.60}; "
+            "make one with np.random.default_rng(seed)"
+        )
+
+
+def require_method(name: str, model: Any, *methods: str) -> None:
+    """Raise `ParameterError` unless `model` has the methods a caller is about to use."""
+    for method in methods:
+        if not callable(getattr(model, method, None)):
+            raise ParameterError(
+                f"{name} must have a method {method}(...), got {model!r:.60}; "
+                "pass a model object, not its class or a number"
+            )

@@ -18,6 +18,8 @@ step with the comb is sampled badly.
 
 Each scheme is a plain function ``scheme(w, rng, n=None)`` that returns ancestor indices
 (int64). Weights may be ``(M,)`` or a batch ``(B, M)``; the result is ``(n,)`` or ``(B, n)``.
+`SCHEMES` names the four. A fifth function, `roulette_wheel`, is a famous teaching example and
+is kept as a specimen: it is almost unbiased, and we can measure the almost.
 """
 
 from __future__ import annotations
@@ -31,41 +33,61 @@ from pfkit.errors import (
     DegenerateWeightsError,
     ParameterError,
     ShapeError,
+    as_numbers,
     require_count,
-    require_finite,
+    require_rng,
 )
 
+Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Resampler = Callable[..., Indices]
 
 
-def _check(w: ArrayLike, n: int | None) -> tuple[NDArray[np.float64], int]:
-    """Weights as normalised floats, and the number of draws."""
-    w = require_finite("weights", w)
-    if w.ndim == 0 or w.shape[-1] == 0:
-        raise ShapeError(f"weights must have shape (M,) or (B, M) with M >= 1, got {w.shape}")
-    if (w < 0).any():
-        raise ParameterError(f"weights must be >= 0, got {w.min()}")
-    total = w.sum(axis=-1, keepdims=True)
+def _read(w: ArrayLike, rng: np.random.Generator, n: int | None) -> tuple[Array, Array, int]:
+    """Weights that are known to be usable, their cumulative sums, and the number of draws."""
+    w = as_numbers("weights", w)
+    if w.ndim == 0 or w.size == 0:
+        raise ShapeError(
+            f"weights must have shape (M,) or (B, M) with M >= 1, got {w.shape}; draw particles"
+        )
+    require_rng(rng)
+    if not w.min() >= 0:  # the minimum of a set with a NaN is NaN
+        raise ParameterError(f"weights must be >= 0, got {w.min()}; pass w, not log-weights")
+    edges = np.cumsum(w, axis=-1)
+    total = edges[..., -1]
     if not (total > 0).all():
         raise DegenerateWeightsError("all weights are 0: nothing to copy; check the likelihood")
-    return w / total, w.shape[-1] if n is None else require_count("n", n)
+    if not ((total > 1e-290) & (total < 1e290)).all():
+        raise ParameterError(
+            f"the sum of weights must lie in 1e-290 to 1e290, got {total.min()} to {total.max()}; "
+            "keep log-weights and let normalise() scale them"
+        )
+    return w, edges, w.shape[-1] if n is None else require_count("n", n)
 
 
-def _pick(w: NDArray[np.float64], u: NDArray[np.float64]) -> Indices:
-    """The particle under each point: first i with cumulative weight > u. Points are sorted.
+def _comb(edges: Array, n: int, offset: Array) -> Indices:
+    """Ancestors for a comb with one tooth in each unit cell k of a ruler of length n.
 
-    Counting the points below each cumulative weight is a merge of two sorted lists: O(M + n).
+    Nothing is searched. Tooth k stands at k + 1 - offset, so an edge at e has
+    floor(e + offset) teeth at or below it. Reading those counts backwards, tooth k belongs to
+    the first particle with more than k teeth at or below its edge.
     """
-    M, n = w.shape[-1], u.shape[-1]
-    if w.ndim > 1:
-        flat_w, flat_u = w.reshape(-1, M), u.reshape(-1, n)
-        rows = [_pick(row, points) for row, points in zip(flat_w, flat_u, strict=True)]
-        return np.stack(rows).reshape(*w.shape[:-1], n)
-    edges = np.cumsum(w)
-    # rounding can leave the last edge below 1: the last particle with weight > 0 takes the rest
-    edges[np.flatnonzero(w)[-1] :] = np.inf
-    return np.searchsorted(edges, u, side="right").astype(np.int64)
+    # a hair above n / total, so that rounding cannot leave the last tooth beyond the last edge
+    edges *= np.nextafter(n / edges[..., -1:], np.inf)
+    if offset.shape[-1] > 1:
+        cell = np.minimum(edges.astype(np.int64), n - 1)
+        offset = np.take_along_axis(offset, cell, axis=-1)
+    edges += offset
+    below = edges.astype(np.int64)
+    if below.ndim == 1:
+        counts = np.bincount(below, minlength=n)[:n]
+    else:  # one long ruler for the whole batch, with n + 1 bins for each row
+        rows = np.minimum(below, n).reshape(-1, below.shape[-1])
+        rows += (n + 1) * np.arange(len(rows), dtype=np.int64)[:, None]
+        counts = np.bincount(rows.ravel(), minlength=len(rows) * (n + 1))
+        counts = counts.reshape(*below.shape[:-1], n + 1)[..., :n]
+    counts = counts.astype(np.int64, copy=False)
+    return np.cumsum(counts, axis=-1, out=counts)
 
 
 def multinomial(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
@@ -93,78 +115,156 @@ def multinomial(w: ArrayLike, rng: np.random.Generator, n: int | None = None) ->
     Notes
     -----
     Source: N. Gordon, D. Salmond and A. Smith, IEE Proc. F 140 (1993). Sorted uniforms come
-    from normalised sums of exponentials, so the cost is O(M + n).
+    from normalised sums of exponentials; each is then looked up in O(log M).
     """
-    w, n = _check(w, n)
+    w, edges, n = _read(w, rng, n)
     gaps = rng.standard_exponential((*w.shape[:-1], n + 1))
-    sums = np.cumsum(gaps, axis=-1)
-    return _pick(w, sums[..., :-1] / sums[..., -1:])
+    points = np.cumsum(gaps, axis=-1)
+    points /= points[..., -1:]
+    return _find(edges, points[..., :-1])
+
+
+def _find(edges: Array, u: Array) -> Indices:
+    """The particle under each point u in [0, 1]: the first whose edge lies above it."""
+    if edges.ndim > 1:
+        rows = zip(edges.reshape(-1, edges.shape[-1]), u.reshape(-1, u.shape[-1]), strict=True)
+        return np.stack([_find(row, points) for row, points in rows]).reshape(u.shape)
+    edges = edges / edges[-1]
+    edges[edges == 1.0] = np.inf  # a point that was rounded up to 1 still has a particle
+    return np.searchsorted(edges, u, side="right").astype(np.int64, copy=False)
 
 
 def stratified(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
     r"""One draw in each of n equal strata: :math:`u_k = (k + U_k)/n`.
 
-    Parameters, returns and errors are those of `multinomial`.
+    Parameters
+    ----------
+    w : array_like (M,) or (B, M), non-negative
+    rng : numpy.random.Generator
+    n : int, optional
+
+    Returns
+    -------
+    int64 array (n,) or (B, n), sorted ancestor indices
+
+    Raises
+    ------
+    ParameterError, ShapeError, DegenerateWeightsError
+        As `multinomial`.
 
     Notes
     -----
     Source: G. Kitagawa, J. Comp. Graph. Stat. 5 (1996). Its offspring variance never exceeds
     that of multinomial (R. Douc, O. Cappe and E. Moulines, 2005). O(M + n), n random numbers.
     """
-    w, n = _check(w, n)
-    return _pick(w, (np.arange(n) + rng.random((*w.shape[:-1], n))) / n)
+    w, edges, n = _read(w, rng, n)
+    return _comb(edges, n, rng.random((*w.shape[:-1], n)))
 
 
 def systematic(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
     r"""A comb with one random offset: :math:`u_k = (k + U)/n`.
 
     Every particle gets :math:`\lfloor n w_m \rfloor` or :math:`\lceil n w_m \rceil` copies.
-    Parameters, returns and errors are those of `multinomial`.
+
+    Parameters
+    ----------
+    w : array_like (M,) or (B, M), non-negative
+    rng : numpy.random.Generator
+    n : int, optional
+
+    Returns
+    -------
+    int64 array (n,) or (B, n), sorted ancestor indices
+
+    Raises
+    ------
+    ParameterError, ShapeError, DegenerateWeightsError
+        As `multinomial`.
 
     Notes
     -----
     Source: Probabilistic Robotics, Table 4.4 (low variance sampler). O(M + n), one random
-    number. We count the teeth below each cumulative weight instead of searching for each.
+    number.
     """
-    w, n = _check(w, n)
-    offset = rng.random((*w.shape[:-1], 1))
-    below = np.ceil(np.cumsum(w, axis=-1) * n - offset).astype(np.int64)
-    below[..., -1] = n
-    np.clip(below, 0, n, out=below)
-    return _expand(w, below, n)
-
-
-def _expand(w: NDArray[np.float64], below: Indices, n: int) -> Indices:
-    """Turn "teeth up to and including particle m" into ancestor indices."""
-    if w.ndim == 1:
-        if w[-1] == 0:  # a tooth lost to rounding belongs to the last particle with weight > 0
-            below[np.flatnonzero(w)[-1] :] = n
-        return np.repeat(np.arange(w.size, dtype=np.int64), np.diff(below, prepend=0))
-    rows = zip(w.reshape(-1, w.shape[-1]), below.reshape(-1, w.shape[-1]), strict=True)
-    return np.stack([_expand(row, b, n) for row, b in rows]).reshape(*w.shape[:-1], n)
+    w, edges, n = _read(w, rng, n)
+    return _comb(edges, n, rng.random((*w.shape[:-1], 1)))
 
 
 def residual(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
     r"""Copy :math:`\lfloor n w_m \rfloor` times, then draw the rest multinomially.
 
     The rest has weights :math:`n w_m - \lfloor n w_m \rfloor`: the fractional part of n w, not
-    of w. Parameters, returns and errors are those of `multinomial`.
+    of w.
+
+    Parameters
+    ----------
+    w : array_like (M,) or (B, M), non-negative
+    rng : numpy.random.Generator
+    n : int, optional
+
+    Returns
+    -------
+    int64 array (n,) or (B, n), sorted ancestor indices
+
+    Raises
+    ------
+    ParameterError, ShapeError, DegenerateWeightsError
+        As `multinomial`.
 
     Notes
     -----
-    Source: J. S. Liu and R. Chen, JASA 93 (1998). O(M + n).
+    Source: J. S. Liu and R. Chen, JASA 93 (1998). O(M + n log M).
     """
-    w, n = _check(w, n)
+    w, edges, n = _read(w, rng, n)
     if w.ndim > 1:
         rows = [residual(row, rng, n) for row in w.reshape(-1, w.shape[-1])]
         return np.stack(rows).reshape(*w.shape[:-1], n)
-    expected = n * w
-    copies = np.floor(expected + 1e-12 * n).astype(np.int64)  # 3.0 may arrive as 2.9999999999
-    rest = np.maximum(expected - copies, 0.0)
+    expected = n * (w / edges[-1])
+    copies = np.floor(expected * (1 + 1e-12)).astype(np.int64)  # 3 may arrive as 2.9999999999
     kept = np.repeat(np.arange(w.size, dtype=np.int64), copies)
-    if kept.size >= n:
-        return kept[:n]
+    if kept.size == n:
+        return kept
+    rest = np.maximum(expected - copies, 0.0)
     return np.sort(np.concatenate((kept, multinomial(rest, rng, n - kept.size))))
+
+
+def roulette_wheel(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
+    r"""The resampling wheel of a famous first course: a specimen, not a recommendation.
+
+    Start at the edge of a particle that is chosen *uniformly*, then walk round the wheel in n
+    independent steps, each uniform on 0 to twice the largest weight:
+
+    .. math:: b_k = b_{k-1} + 2\, w_{\max} U_k , \qquad U_k \sim \mathcal U(0, 1)
+
+    It looks like systematic resampling and needs n + 1 random numbers instead of one. The walk
+    forgets its start only slowly, and the start ignores the weights: for few particles
+    :math:`E[N_m]` is *not* :math:`n w_m`. Its copies also scatter more than a comb's.
+
+    Parameters
+    ----------
+    w : array_like (M,) or (B, M), non-negative
+    rng : numpy.random.Generator
+    n : int, optional
+
+    Returns
+    -------
+    int64 array (n,) or (B, n), ancestor indices in the order of the walk, *not* sorted
+
+    Raises
+    ------
+    ParameterError, ShapeError, DegenerateWeightsError
+        As `multinomial`.
+
+    Notes
+    -----
+    Source: S. Thrun, CS373 Programming a Robotic Car, unit 3 (2012). O(M + n log M).
+    """
+    w, edges, n = _read(w, rng, n)
+    total, batch = edges[..., -1:], w.shape[:-1]
+    start = rng.integers(w.shape[-1], size=(*batch, 1))
+    first = np.take_along_axis(edges - w, start, axis=-1) / total  # the start's left edge
+    steps = 2 * w.max(axis=-1, keepdims=True) / total * rng.random((*batch, n))
+    return _find(edges, (first + np.cumsum(steps, axis=-1)) % 1.0)
 
 
 SCHEMES: dict[str, Resampler] = {
