@@ -48,7 +48,7 @@ def ruff(fix: bool = False) -> list[list[str]]:
 
 
 def stages(lax: bool = False) -> list[Stage]:
-    """List all checks in order; lax: notebooks must run, their outputs may differ in last digits."""
+    """List all checks in order; lax: the last digits of stored outputs may differ."""
     nbval = ["--nbval-lax" if word == "--nbval" else word for word in NBVAL] if lax else NBVAL
     tool = [PYTHON, "tools/notebooks.py", "--check"], [PYTHON, "tools/prose_numbers.py", "--check"]
     separate = ["tests/test_layers.py", "tests/test_stamps.py", "tests/book", "tests/live"]

@@ -46,7 +46,7 @@ def require_python() -> None:
 
 
 def fingerprint(kind: str) -> str:
-    """Hash what an environment is made from: lock file, Python, what pip reads of pyproject.toml."""
+    """Hash what an environment is made from: Python, lock file, what pip reads of the project."""
     import tomllib
 
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
