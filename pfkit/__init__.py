@@ -14,6 +14,7 @@ from pfkit.errors import (
     ShapeError,
     UnknownLandmarkError,
 )
+from pfkit.chi2 import chi2_quantile, chi2_tail
 from pfkit.geometry import between, circular_mean, compose, inverse, wrap
 
 # L1: beliefs, logs, maps, resampling
@@ -71,15 +72,8 @@ from pfkit.oracle import (
     kl_divergence,
     refinement,
 )
-from pfkit.gaussian import (
-    Gaussian,
-    gaussian_predict,
-    gaussian_update,
-    kalman_predict,
-    kalman_update,
-    linearise,
-    unscented,
-)
+from pfkit.kalman import Gaussian, kalman_predict, kalman_update
+from pfkit.gaussian import gaussian_predict, gaussian_update, linearise, unscented
 from pfkit.smoother import GaussianHistory, rts_smooth, run_gaussian
 
 # L4: simulation, data, judgement
@@ -93,6 +87,16 @@ from pfkit.diagnostics import (
     settle_time,
     trace,
 )
+from pfkit.comparison import (
+    Comparison,
+    Interval,
+    bootstrap_interval,
+    compare,
+    paired,
+    root_mean_square,
+    wilson_interval,
+)
+from pfkit.consistency import coverage, credibility, nees, nees_band
 from pfkit.symmetry import hypothesis_mass, images, symmetries
 from pfkit.faults import Outliers, Sight
 from pfkit.routes import PurePursuit, commands, odometry_along

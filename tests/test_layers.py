@@ -18,7 +18,7 @@ ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "pfkit"
 
 LAYERS: dict[str, list[str]] = {
-    "L0": ["errors", "geometry"],
+    "L0": ["errors", "chi2", "geometry"],
     "L1": [
         *["particles", "log", "maps", "worlds", "occupancy", "distance", "raycast"],
         *["resampling", "schemes", "branching", "genealogy"],
@@ -40,7 +40,7 @@ LAYERS: dict[str, list[str]] = {
     ],
     "L4": [
         *["odometry", "routes", "simulate", "datasets", "diagnostics", "observability"],
-        *["calibration", "consistency", "divergence", "symmetry", "localise"],
+        *["calibration", "comparison", "consistency", "divergence", "symmetry", "localise"],
     ],
     "L5": ["study"],
 }
