@@ -60,6 +60,7 @@ async function boot(message) {
   python.unpackArchive(files["numpy.zip"], "zip", folder);
   python.unpackArchive(files["pfkit.zip"], "zip", folder);
   tell("Importing pfkit", 0.9);
+  python.runPython("from pfkit.explore.wasm import accept_int64; accept_int64()");
   if (message.kind === "cells") {
     cells = python.runPython("from pfkit.explore.cells import Cells; Cells()");
   } else host = python.runPython("import pfkit.explore.host as h; h.Host()");
@@ -106,6 +107,7 @@ self.onmessage = async ({ data }) => {
     const transfer = ok && ok.drawing ? [ok.drawing.buffer] : [];
     postMessage({ id: data.id, ok }, transfer);
   } catch (error) {
+    console.info(String(error.message || error)); // the whole traceback, for whoever looks
     postMessage({ id: data.id, error: short(error) });
   }
 };
