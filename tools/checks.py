@@ -54,7 +54,7 @@ def stages(lax: bool = False) -> list[Stage]:
     separate = ["tests/test_layers.py", "tests/test_stamps.py", "tests/book", "tests/live"]
     apart = [f"--ignore={name}" for name in separate]
     browser = [name for name in ("tests/book", "tests/live") if list((ROOT / name).glob("test_*"))]
-    notebooks = [name for name in ("notebooks",) if list((ROOT / name).rglob("*.ipynb"))]
+    notebooks = ["book/index.ipynb", *map(str, sorted((ROOT / "notebooks").rglob("*_*.ipynb")))]
     return [
         Stage("lint", "style and format (ruff)", ruff()),
         Stage("types", "types of pfkit (mypy)", [[PYTHON, "-m", "mypy"]]),
@@ -66,7 +66,7 @@ def stages(lax: bool = False) -> list[Stage]:
         Stage(
             "notebooks",
             "executing each notebook gives its stored outputs (nbval, strict)",
-            [[*PYTEST, *TWO_CORES, *nbval, *notebooks]] if notebooks else [],
+            [[*PYTEST, *TWO_CORES, *nbval, *notebooks]],
         ),
         Stage("book", "the book builds without a warning", [[PYTHON, "tools/book.py", "book"]]),
         Stage(

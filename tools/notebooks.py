@@ -26,7 +26,7 @@ from pathlib import Path
 import stamps
 from stamps import ROOT
 
-FOLDERS = ("notebooks", "notebooks/labs")
+FOLDERS = ("book", "notebooks", "notebooks/labs")
 KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
 LANGUAGE = {"name": "python", "pygments_lexer": "ipython3", "file_extension": ".py"}
 QUIET = {"MPLBACKEND": "module://matplotlib_inline.backend_inline", "PYTHONHASHSEED": "0"}

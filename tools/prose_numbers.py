@@ -4,11 +4,11 @@ A result is written in the text with a comment behind it that names the line of 
 
     The filter stays within 0.06<!--= RMSE --> m of the truth.
 
-Readers, in the book and in Jupyter, see `0.06`. The comment names what stands before the first
-number of a printed line (`RMSE of filter = 0.0581 m` is `RMSE of filter`; case and punctuation do
-not matter). Further forms: `label [2]` is the second number of that line, `label * 100` a
-percentage, `06_particle_filter#label` a line of another notebook. The number must be the printed
-one, rounded to the decimals the text shows.
+Readers, in the book and in Jupyter, see `0.06`. The comment names what stands before the number
+in a printed line, from the start of that line (`RMSE of filter` in `RMSE of filter = 0.0581 m`);
+case and punctuation do not matter. Further forms: `label [2]` is the second number behind the
+label, `label * 100` a percentage, `06_particle_filter#label` a line of another notebook. The number
+must be the printed one, rounded to the decimals the text shows.
 
 Numbers without a comment must occur in the code or output of the notebook, except whole numbers up
 to 20, years, and numbers that name something (Chapter 7, Table 4.4). A fact that no cell can give,
@@ -16,7 +16,7 @@ say from a paper, is marked `1,354<!--given-->`.
 
     python tools/prose_numbers.py --check [FILE ...]    list what does not agree
     python tools/prose_numbers.py --fill  [FILE ...]    write the printed values into the text
-    python tools/prose_numbers.py --labels FILE         list the labels a notebook offers
+    python tools/prose_numbers.py --labels FILE         list the lines a notebook offers
 """
 
 from __future__ import annotations
@@ -88,19 +88,18 @@ def printed(cell: dict) -> str:
     return "\n".join(parts)
 
 
-def labels(notebook: dict) -> dict[str, list[list[float]]]:
-    """Map each label to the lists of numbers printed behind it, one list a line."""
-    found: dict[str, list[list[float]]] = {}
-    for cell in stamps.code_cells(notebook):
-        for line in printed(cell).splitlines():
-            numbers = list(re.finditer(rf"(?<![\w.])(?:{NUMBER})(?![\w]*\w*=)", line))
-            name = slug(line[: numbers[0].start()]) if numbers else ""
-            if name:
-                rows = found.setdefault(name, [])
-                row = [value(match.group()) for match in numbers]
-                if row not in rows:
-                    rows.append(row)
-    return found
+def lines(notebook: dict) -> list[str]:
+    """Return every line that the cells of a notebook print, each once."""
+    cells = stamps.code_cells(notebook)
+    return list(dict.fromkeys(line for cell in cells for line in printed(cell).splitlines()))
+
+
+def numbers_behind(label: str, line: str) -> list[float]:
+    """Return the numbers of a line behind its label, or none if the line has another label."""
+    words = r"[\W_]+".join(map(re.escape, slug(label).split()))
+    start = re.match(rf"[\W_]*{words}(?![^\W_])[^A-Za-z]*?(?=(?:{NUMBER}))", line, re.IGNORECASE)
+    rest = line[start.end() :] if start else ""
+    return [value(match) for match in re.findall(rf"(?<![\w.])(?:{NUMBER})", rest)]
 
 
 def look_up(rule: str, notebook: dict, folder: Path) -> float:
@@ -113,7 +112,7 @@ def look_up(rule: str, notebook: dict, folder: Path) -> float:
         if not path.exists():
             raise LookupError(f"there is no notebook {match['page']}.ipynb")
         notebook = stamps.read(path)
-    rows = labels(notebook).get(slug(match["label"]), [])
+    rows = [row for line in lines(notebook) if (row := numbers_behind(match["label"], line))]
     if not rows:
         raise LookupError(f"no cell prints a line that starts with {match['label'].strip()!r}")
     nth = int(match["nth"] or 1)
@@ -213,7 +212,10 @@ def fill_file(path: Path) -> None:
 
 def pages() -> list[Path]:
     """Return every page that may hold numbers: notebooks and Markdown."""
-    tops = (("notebooks", "*.ipynb"), ("notebooks/labs", "*.ipynb"), ("book", "*.md"))
+    tops = (
+        ("book", "*.md"),
+        *((top, "*.ipynb") for top in ("book", "notebooks", "notebooks/labs")),
+    )
     return sorted(path for top, kind in tops for path in (ROOT / top).glob(kind))
 
 
@@ -224,14 +226,13 @@ def main() -> int:
     action = parser.add_mutually_exclusive_group()
     action.add_argument("--check", action="store_true", help="list what does not agree (default)")
     action.add_argument("--fill", action="store_true", help="write the printed values")
-    action.add_argument("--labels", action="store_true", help="list the labels of notebooks")
+    action.add_argument("--labels", action="store_true", help="list the lines with numbers")
     options = parser.parse_args()
     chosen = options.files or pages()
     bad = 0
     for path in chosen:
         if options.labels:
-            for name, rows in labels(stamps.read(path)).items():
-                print(f"{name}: {'; '.join(' '.join(f'{x:g}' for x in row) for row in rows)}")
+            print("\n".join(line for line in lines(stamps.read(path)) if re.search(r"\d", line)))
             continue
         if options.fill:
             fill_file(path)

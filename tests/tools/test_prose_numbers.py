@@ -11,6 +11,8 @@ NOWHERE = Path("nowhere")
 PRINTED = """RMSE of filter = 0.0581 m
 dead reckoning   31.70   4.10
 converged_in: 17 s
+after 10 steps off by 0.88 m
+after 60 steps off by 0.21 m
 copies of 1,347 particles
 """
 
@@ -32,6 +34,7 @@ def faults(text):
         "off by **0.058**<!--= rmse of FILTER --> m",
         "that is 5.8<!--= RMSE of filter * 100 --> cm",
         "31.7<!--= dead reckoning --> m and 4.1<!--= dead reckoning [2] --> degrees",
+        "now 0.21<!--= after 60 steps off by --> m",
         "after 17<!--= converged in --> s",
         "Leung drove 1,354<!--given--> m",
         "with 1,000 particles and 0.135 m",  # from the code
@@ -52,6 +55,7 @@ def test_right_numbers_pass(text):
         ("off by 0.06<!--= RMSE of smoother --> m", "no cell prints"),
         ("4.1<!--= dead reckoning [3] -->", "no such number"),
         ("0.6<!--= 02_missing#label -->", "no notebook 02_missing"),
+        ("0.06<!--= RMSE -->", "no cell prints"),
         ("off by 0.77 m", "occurs in no cell"),
         ("with 5,000 particles", "occurs in no cell"),
     ],
