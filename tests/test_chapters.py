@@ -111,7 +111,19 @@ def problems(notebook, name, items):
         alt = cell["metadata"].get("mystnb", {}).get("image", {}).get("alt", "")
         if has_figure(cell) and len(alt) < 30:
             found.append(f"figure in cell {cell['id']} needs alt text that says what it shows")
-    return found + objective_problems(cells, items)
+    return found + objective_problems(cells, items) + option_problems(cells, items)
+
+
+def option_problems(cells, items):
+    """A choice must be readable where it is asked: its options stand in the text."""
+    prose = " ".join(" ".join(text(c).split()) for c in cells if c["cell_type"] == "markdown")
+    asked = {i for c in cells if c["cell_type"] == "code" for _, i in LAB_CALL.findall(text(c))}
+    return [
+        f"{i} ({letter}) is not in the text: {option}"
+        for i in sorted(asked & items.keys())
+        for letter, option in getattr(items[i], "options", {}).items()
+        if f"({letter}) {option}" not in prose
+    ]
 
 
 def objective_problems(cells, items):

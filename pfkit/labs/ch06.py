@@ -485,13 +485,12 @@ no_copy_x = Experiment(
 )
 
 
-def _frozen_run(rng, M=100, steps=40, schemes=True):
+def _frozen_run(rng, M=100, steps=60):
     world, pose = pf.worlds.arena(), np.array([5.0, 4.0, 0.0])
-    sensor, bel = pf.RangeBearing(world, 0.3, 0.1), pf.uniform_prior(M, world, rng)
+    sensor, bel = pf.RangeBearing(world, 2.0, 0.5), pf.uniform_prior(M, world, rng)
     for _ in range(steps):
         bel, _ = pf.update(bel, sensor.sample(pose, rng), sensor)
-        if schemes:
-            bel = pf.resample(bel, pf.systematic, rng)
+        bel = pf.resample(bel, pf.systematic, rng)
     return np.unique(bel.state[0]).size
 
 
@@ -516,7 +515,7 @@ frozen_x = Experiment(
     hints=(
         "Weigh and copy at every step; do not move.",
         "np.unique(bel.state[0]).size counts different particles.",
-        "It is frozen_run with M=100 and steps=40, first result, last entry.",
+        "It is frozen_run(rng, M=100)[0][-1].",
     ),
     misconceptions=(
         Misconception(
