@@ -103,5 +103,6 @@ from pfkit.routes import PurePursuit, commands, odometry_along
 from pfkit.simulate import drive, sense, simulate_log
 
 # L5: studies
+from pfkit import study
 
 __version__ = "0.1.0"

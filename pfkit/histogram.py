@@ -105,12 +105,12 @@ def predict_1d(bel: ArrayLike, kernel: ArrayLike, ring: bool = False) -> Array:
             f"kernel must have an odd length, its middle for 'no move', got {kernel.shape}"
         )
     n, k = bel.shape[-1], kernel.size // 2
-    moved = np.zeros_like(bel)
+    moved = np.zeros_like(bel.T)  # cells first
     for s in range(-k, k + 1):
         target = np.arange(n, dtype=np.int64) + s
         target = target % n if ring else np.clip(target, 0, n - 1)
-        np.add.at(moved, (..., target), kernel[k + s] * bel)
-    return moved
+        np.add.at(moved, target, kernel[k + s] * bel.T)
+    return moved.T
 
 
 def update_1d(bel: ArrayLike, likelihood: ArrayLike) -> tuple[Array, Array | np.float64]:

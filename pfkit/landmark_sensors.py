@@ -71,6 +71,7 @@ class RangeBearing(Sensor):
     nu: float = math.inf
     bias_phi: float = 0.0
     components: ClassVar[int] = 3
+    angles: ClassVar[tuple[int, ...]] = (1,)
 
     def __post_init__(self) -> None:
         require_positive("sigma_r", self.sigma_r)
@@ -133,6 +134,7 @@ class Bearing(Sensor):
     nu: float = math.inf
     bias_phi: float = 0.0
     components: ClassVar[int] = 2
+    angles: ClassVar[tuple[int, ...]] = (0,)
 
     def __post_init__(self) -> None:
         require_positive("sigma_phi", self.sigma_phi)

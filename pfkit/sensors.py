@@ -38,6 +38,7 @@ from pfkit.errors import (
     require_components,
     require_finite,
     require_positive,
+    require_rng,
 )
 from pfkit.geometry import wrap
 
@@ -78,6 +79,7 @@ def require_nu(nu: float) -> None:
 
 def draw_errors(sigma: float, nu: float, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
     """Errors of scale sigma: Gaussian, or Student t."""
+    require_rng(rng)
     draws = rng.standard_normal(shape) if math.isinf(nu) else rng.standard_t(nu, shape)
     return sigma * draws
 
@@ -91,6 +93,10 @@ class Sensor:
 
     components: ClassVar[int]
     angles: ClassVar[tuple[int, ...]] = ()
+
+    def check_state(self, pose: ArrayLike) -> Array:
+        """Return a pose (3, ...) as a finite array; sensors of other states say which."""
+        return require_components("pose", pose, 3)
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log density of one measurement zk (n, ...) at poses (3, ...): shape (...)."""
@@ -112,8 +118,11 @@ class Sensor:
         ------
         ShapeError, DataError
             If z does not have n rows or holds NaN or infinity.
+        ParameterError, ShapeError
+            If a pose is not finite, or does not have the components that the sensor reads.
         """
-        z = require_finite("z", require_components("z", z, self.components), DataError)
+        z = require_components("z", z, self.components, DataError)
+        pose = self.check_state(pose)
         if z.ndim == 1:
             z = z[:, None]
         total = np.zeros(pose.shape[1:])
@@ -169,10 +178,18 @@ class Position(Sensor):
 
     def expected(self, pose: Array) -> Array:
         """The position itself, as one measurement: (2, 1, ...)."""
-        return np.array(pose[:2, None], dtype=float)
+        return self.check_state(pose)[:2, None].copy()
+
+    def check_state(self, pose: ArrayLike) -> Array:
+        """Return a state (D, ...), D >= 2, as a finite array."""
+        state = require_finite("state", pose)
+        if state.ndim == 0 or state.shape[0] < 2:
+            raise ShapeError(f"state must have x and y first, shape (2, ...), got {state.shape}")
+        return state
 
     def sample(self, pose: Array, rng: np.random.Generator) -> Array:
         """One noisy position: (2, 1, ...)."""
+        require_rng(rng)
         z = self.expected(pose)
         return z + np.tensordot(self._root, rng.standard_normal(z.shape), axes=1)  # type: ignore[attr-defined]
 

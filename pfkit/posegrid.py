@@ -1,0 +1,165 @@
+r"""A belief about a pose as one number per cell: the exact answer we can afford, once.
+
+A pose has three components, so the corridor's list of cells becomes a block: n_x by n_y by
+n_theta numbers, each the probability that the robot stands in that cell with that heading.
+Four modes, a ring, a wedge: a block shows them all, and no luck is involved.
+
+The price is memory and time. A hundred cells each way are a million, and cells twice as fine
+are eight times as many. Most of them are empty most of the time, which is the observation that
+particles start from.
+
+`gridfilter` moves and weighs such a belief; `oracle` compares particles with it.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pfkit.errors import (
+    ParameterError,
+    ShapeError,
+    require_components,
+    require_finite,
+    require_positive,
+    require_shape,
+)
+from pfkit.geometry import wrap
+from pfkit.particles import Particles, normalise
+from pfkit.sensors import log_gaussian
+
+Array = NDArray[np.float64]
+Bounds = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True)
+class PoseGrid:
+    """A belief about a pose as one probability per cell.
+
+    Parameters
+    ----------
+    p : array (n_x, n_y, n_theta), probabilities that sum to one
+    bounds : (x_min, x_max, y_min, y_max), metres
+        What the cells cover; headings always cover the circle, from -pi on.
+    lost : float
+        Share of mass that has left the bounds so far. It is dropped and the rest scaled up: the
+        robot is taken to stay inside, so choose bounds with a margin and keep an eye on it.
+    """
+
+    p: Array
+    bounds: Bounds
+    lost: float = 0.0
+
+    def __post_init__(self) -> None:
+        if self.p.ndim != 3 or self.p.size == 0:
+            raise ShapeError(f"p must have shape (n_x, n_y, n_theta), got {self.p.shape}")
+        x0, x1, y0, y1 = self.bounds
+        if not (x0 < x1 and y0 < y1):
+            raise ParameterError(f"bounds must be (x_min, x_max, y_min, y_max), got {self.bounds}")
+
+    @property
+    def low(self) -> Array:
+        """Lower corner of the block (3,): metres, metres, radians."""
+        return np.array((self.bounds[0], self.bounds[2], -np.pi))
+
+    @property
+    def cell(self) -> Array:
+        """Size of a cell (3,): metres, metres, radians."""
+        x0, x1, y0, y1 = self.bounds
+        return np.array((x1 - x0, y1 - y0, 2 * np.pi)) / self.p.shape
+
+    @cached_property
+    def poses(self) -> Array:
+        """Cell centres (3, n_x, n_y, n_theta)."""
+        axes = [
+            a + h * (np.arange(n) + 0.5)
+            for a, h, n in zip(self.low, self.cell, self.p.shape, strict=True)
+        ]
+        return np.stack(np.meshgrid(*axes, indexing="ij"))
+
+    def index(self, pose: ArrayLike) -> tuple[NDArray[np.int64], NDArray[np.bool_]]:
+        """Flat cell numbers (...) of poses (3, ...), and whether each lies inside the bounds.
+
+        A pose outside gets the cell of the block that is nearest to it.
+        """
+        pose = require_components("pose", pose, 3)
+        column = (slice(None), *(None,) * (pose.ndim - 1))
+        at = np.floor((pose - self.low[column]) / self.cell[column]).astype(np.int64)
+        n_x, n_y, n_theta = self.p.shape
+        i, j = np.clip(at[0], 0, n_x - 1), np.clip(at[1], 0, n_y - 1)
+        return (i * n_y + j) * n_theta + at[2] % n_theta, (i == at[0]) & (j == at[1])
+
+    def particles(self) -> Particles:
+        """The cells as weighted particles at their centres, so that every estimator applies."""
+        with np.errstate(divide="ignore"):  # log 0 = -inf is what an empty cell means
+            return Particles(self.poses.reshape(3, -1), np.log(self.p).ravel())
+
+    def __repr__(self) -> str:
+        shape = " x ".join(str(n) for n in self.p.shape)
+        return f"PoseGrid({shape} cells, bounds {self.bounds}, lost {self.lost:.1e})"
+
+
+def uniform_grid(shape: tuple[int, int, int], bounds: Bounds) -> PoseGrid:
+    """Know nothing: the same probability in each of n_x * n_y * n_theta cells.
+
+    Parameters
+    ----------
+    shape : (n_x, n_y, n_theta)
+    bounds : (x_min, x_max, y_min, y_max), metres, for example ``world.bounds``
+
+    Returns
+    -------
+    PoseGrid
+    """
+    shape = _shape(shape)
+    return PoseGrid(np.full(shape, 1 / math.prod(shape)), _bounds(bounds))
+
+
+def gaussian_grid(
+    shape: tuple[int, int, int], bounds: Bounds, mean: ArrayLike, sigma: ArrayLike
+) -> PoseGrid:
+    r"""Know the pose up to independent Gaussian errors, the heading's wrapped.
+
+    .. math:: p_{ijk} \propto \mathcal N(x_i; \bar x, \sigma_x^2)\,
+              \mathcal N(y_j; \bar y, \sigma_y^2)\, \mathcal N(\mathrm{wrap}(\theta_k -
+              \bar\theta); 0, \sigma_\theta^2)
+
+    Parameters
+    ----------
+    shape : (n_x, n_y, n_theta)
+    bounds : (x_min, x_max, y_min, y_max), metres
+    mean : array_like (3,), metres and radians
+    sigma : array_like (3,), standard deviations > 0, metres and radians
+        Much less than a cell, and the grid cannot show it.
+
+    Returns
+    -------
+    PoseGrid
+    """
+    grid = uniform_grid(shape, bounds)
+    mean = require_finite("mean", require_components("mean", mean, 3))
+    sigma = require_positive("sigma", require_components("sigma", sigma, 3))
+    x, y, theta = grid.poses
+    errors = (x - mean[0], y - mean[1], wrap(theta - mean[2]))
+    log_p = np.zeros(grid.p.shape)
+    for error, sd in zip(errors, sigma, strict=True):
+        log_p += log_gaussian(error, sd)
+    return replace(grid, p=np.exp(normalise(log_p.ravel())[0]).reshape(grid.p.shape))
+
+
+def _shape(shape: tuple[int, int, int]) -> tuple[int, int, int]:
+    cells = require_shape("shape", tuple(shape))
+    if len(cells) != 3:
+        raise ShapeError(f"shape must be (n_x, n_y, n_theta), got {shape}")
+    return cells
+
+
+def _bounds(bounds: Bounds) -> Bounds:
+    values = require_finite("bounds", bounds)
+    if values.shape != (4,):
+        raise ShapeError(f"bounds must be (x_min, x_max, y_min, y_max), got {bounds!r:.80}")
+    return tuple(values.tolist())
