@@ -29,7 +29,16 @@ from pfkit.particles import (
 )
 from pfkit.log import Log, Step
 from pfkit.maps import LandmarkMap
-from pfkit.resampling import SCHEMES, multinomial, residual, stratified, systematic
+from pfkit.resampling import (
+    SCHEMES,
+    multinomial,
+    residual,
+    roulette_wheel,
+    stratified,
+    systematic,
+)
+from pfkit.survival import survival
+from pfkit.triggers import ess_below, every, information, on_information
 from pfkit.genealogy import (
     Genealogy,
     ancestry,
@@ -96,6 +105,7 @@ from pfkit.comparison import (
     root_mean_square,
     wilson_interval,
 )
+from pfkit.table import summarise, tabulate
 from pfkit.consistency import coverage, credibility, nees, nees_band
 from pfkit.symmetry import hypothesis_mass, images, symmetries
 from pfkit.faults import Outliers, Sight

@@ -34,6 +34,7 @@ from pfkit.filters import History
 from pfkit.geometry import wrap
 from pfkit.log import Log
 from pfkit.motion import MotionModel
+from pfkit.table import Table, tabulate
 
 Array = NDArray[np.float64]
 
@@ -54,10 +55,12 @@ def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
 
     Raises
     ------
-    ShapeError
-        If the shapes do not belong together.
+    ShapeError, DataError
+        If the shapes do not belong together, or a number is not finite: score only the steps
+        whose truth is known.
     """
-    estimate, truth = np.asarray(estimate, dtype=float), np.asarray(truth, dtype=float)
+    estimate = require_finite("estimate", estimate, DataError)
+    truth = require_finite("truth", truth, DataError)
     if estimate.ndim == 0 or estimate.shape[0] < 2:
         raise ShapeError(
             f"estimate must have its components first, shape (D, ...), got {estimate.shape}"
@@ -133,7 +136,6 @@ def heading_rmse(estimate: ArrayLike, truth: ArrayLike) -> Array | np.float64:
 def _root_mean_square(error: Array) -> Array | np.float64:
     if error.ndim == 0 or error.shape[0] == 0:
         raise ShapeError(f"need (D, T) with at least one step T, got errors of {error.shape}")
-    require_finite("the error", error, DataError)
     return np.sqrt(np.mean(error * error, axis=0))
 
 
@@ -191,7 +193,7 @@ def dead_reckoning(log: Log, motion: MotionModel, start: ArrayLike | None = None
     return np.stack(path, axis=1) if path else np.empty((len(pose), 0))
 
 
-def trace(history: History) -> NDArray[np.void]:
+def trace(history: History) -> Table:
     """One row per step: what happened, ready for a table, a plot or a CSV file.
 
     Parameters
@@ -222,7 +224,4 @@ def trace(history: History) -> NDArray[np.void]:
         if history.truth is None
         else position_error(history.estimate, history.truth),
     }
-    table = np.empty(T, dtype=[(name, column.dtype) for name, column in columns.items()])
-    for name, column in columns.items():
-        table[name] = column
-    return table
+    return tabulate(columns)

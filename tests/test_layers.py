@@ -21,7 +21,7 @@ LAYERS: dict[str, list[str]] = {
     "L0": ["errors", "chi2", "geometry"],
     "L1": [
         *["particles", "log", "maps", "worlds", "occupancy", "distance", "raycast"],
-        *["resampling", "schemes", "branching", "genealogy"],
+        *["resampling", "survival", "triggers", "genealogy"],
     ],
     "L2": [
         *["motion", "odometry_motion", "wheels", "targets", "sensors", "landmark_sensors"],
@@ -38,8 +38,9 @@ LAYERS: dict[str, list[str]] = {
         "modes",
     ],
     "L4": [
-        *["odometry", "routes", "simulate", "datasets", "diagnostics", "observability"],
-        *["calibration", "comparison", "consistency", "divergence", "symmetry", "localise"],
+        *["odometry", "routes", "simulate", "datasets", "comparison", "table"],
+        *["diagnostics", "observability", "calibration", "consistency", "divergence"],
+        *["symmetry", "localise"],
     ],
     "L5": ["study"],
 }
