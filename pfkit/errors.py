@@ -41,9 +41,12 @@ class UnknownLandmarkError(PfkitError):
 def as_numbers(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
     """Return `value` as a float array; raise `error` if it does not consist of numbers."""
     try:
-        return np.asarray(value, dtype=float)
-    except (TypeError, ValueError):
-        raise error(f"{name} must be numbers, got {value!r:.80}; pass floats or an array") from None
+        array = np.asarray(value)
+    except ValueError:  # a ragged list
+        array = np.asarray("ragged")
+    if array.dtype.kind not in "fiub":  # no text, objects, complex numbers or dates
+        raise error(f"{name} must be real numbers, got {value!r:.80}; pass floats or an array")
+    return array.astype(float, copy=False)
 
 
 def require_finite(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
@@ -90,18 +93,25 @@ def require_count(name: str, value: Any, least: int = 1) -> int:
 def require_shape(name: str, value: Shape) -> tuple[int, ...]:
     """Read a number M, or a shape such as (B, M), as a tuple of whole numbers >= 1."""
     shape = value if isinstance(value, tuple) else (value,)
+    if not shape:
+        raise ParameterError(f"{name} must be a whole number or (B, M), got {value!r}")
     return tuple(require_count(name, n) for n in shape)
 
 
-def require_components(name: str, value: Any, n: int) -> np.ndarray:
-    """Return `value` as a float array whose first axis has length `n`; else `ShapeError`."""
+def require_components(
+    name: str, value: Any, n: int, error: type[PfkitError] = ParameterError
+) -> np.ndarray:
+    """Return `value` as a finite float array whose first axis has length `n`.
+
+    Raises `ShapeError` if it does not have that shape, and `error` if it is not finite.
+    """
     array = as_numbers(name, value, ShapeError)
     if array.ndim == 0 or array.shape[0] != n:
         hint = "; transpose it" if array.ndim == 2 and array.shape[1] == n else ""
         raise ShapeError(
             f"{name} must have its {n} components first, shape ({n}, ...), got {array.shape}{hint}"
         )
-    return array
+    return require_finite(name, array, error)
 
 
 def require_rng(rng: Any) -> None:

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.geometry import circular_mean, wrap
-from pfkit.particles import Particles
+from pfkit.particles import Particles, require_particles
 
 
 def mean_pose(bel: Particles) -> NDArray[np.float64]:
@@ -30,8 +30,13 @@ def mean_pose(bel: Particles) -> NDArray[np.float64]:
     Returns
     -------
     array (D,) or (D, B), metres and radians
+
+    Raises
+    ------
+    ParameterError
+        If `bel` is not a particle set.
     """
-    w = bel.w
+    w = require_particles(bel).w
     mean = np.einsum("d...m,...m->d...", bel.state, w)
     if bel.state.shape[0] >= 3:
         mean[2] = circular_mean(bel.state[2], w)
@@ -50,6 +55,11 @@ def covariance(bel: Particles) -> NDArray[np.float64]:
     Returns
     -------
     array (D, D) or (D, D, B), in the products of the state's units
+
+    Raises
+    ------
+    ParameterError
+        If `bel` is not a particle set.
     """
     deviation = bel.state - mean_pose(bel)[..., None]
     if bel.state.shape[0] >= 3:

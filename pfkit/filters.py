@@ -25,13 +25,23 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_fraction
+from pfkit.errors import (
+    DataError,
+    ParameterError,
+    ShapeError,
+    as_numbers,
+    require_count,
+    require_finite,
+    require_method,
+    require_rng,
+)
 from pfkit.estimators import covariance, mean_pose
 from pfkit.log import Log
 from pfkit.motion import MotionModel
-from pfkit.particles import Particles, equal_log_weights, normalise
+from pfkit.particles import Particles, equal_log_weights, normalise, require_particles
 from pfkit.resampling import Resampler, systematic
 from pfkit.sensors import SensorModel
+from pfkit.triggers import Trigger, ess_below
 
 Array = NDArray[np.float64]
 
@@ -71,11 +81,26 @@ def predict(
     -------
     Particles with the same weights
 
+    Raises
+    ------
+    ParameterError, ShapeError
+        If the belief, the control, the model or the generator is not one, or the model moves
+        the particles to places that are not finite or not as many.
+
     Notes
     -----
     Source: Probabilistic Robotics, Table 4.3, line 4.
     """
-    return Particles(motion.sample(bel.state, np.asarray(u, dtype=float), rng), bel.log_w)
+    require_particles(bel)
+    require_method("motion", motion, "sample")
+    require_rng(rng)
+    state = motion.sample(bel.state, require_finite("u", u), rng)
+    if np.shape(state) != bel.state.shape:
+        raise ShapeError(
+            f"the motion model must return states of shape {bel.state.shape}, got "
+            f"{np.shape(state)}; one column per particle"
+        )
+    return Particles(state, bel.log_w)
 
 
 def update(
@@ -103,14 +128,18 @@ def update(
         If the measurement is impossible for every particle, or a likelihood is NaN.
     ShapeError
         If the sensor does not return one number per particle.
+    ParameterError, DataError
+        If the belief or the model is not one, or z is not made of numbers.
 
     Notes
     -----
     Source: Probabilistic Robotics, Table 4.3, line 5.
     """
+    require_particles(bel)
+    require_method("sensor", sensor, "log_likelihood")
     if z is None or _columns(z) == 0:
         return bel, np.zeros(bel.log_w.shape[:-1])[()]
-    log_likelihood = sensor.log_likelihood(np.asarray(z, dtype=float), bel.state)
+    log_likelihood = sensor.log_likelihood(as_numbers("z", z, DataError), bel.state)
     if np.shape(log_likelihood) != bel.log_w.shape:
         raise ShapeError(
             f"the sensor must return one log-likelihood per particle, shape {bel.log_w.shape}, "
@@ -126,7 +155,36 @@ def _columns(z: ArrayLike) -> int:
 
 
 def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
-    """Copy the named ancestors into a set of equal weights: indices (n,) or (B, n)."""
+    """Copy the named ancestors into a set of equal weights.
+
+    Parameters
+    ----------
+    bel : Particles
+    ancestors : int array (n,) or (B, n)
+        Index of the particle that each new one copies.
+
+    Returns
+    -------
+    Particles with equal weights
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If the indices are not whole numbers from 0 to M - 1, or not in the belief's batch shape.
+    """
+    require_particles(bel)
+    ancestors = np.asarray(ancestors)
+    if ancestors.ndim != bel.log_w.ndim or ancestors.shape[:-1] != bel.log_w.shape[:-1]:
+        raise ShapeError(
+            f"ancestors must have shape (n,), or (B, n) for a batch, got {ancestors.shape} "
+            f"for weights of shape {bel.log_w.shape}"
+        )
+    whole = ancestors.dtype.kind in "iu" and ancestors.size > 0
+    if not whole or ancestors.min() < 0 or ancestors.max() >= bel.M:
+        raise ParameterError(
+            f"ancestors must be whole numbers from 0 to {bel.M - 1}, got {ancestors!r:.80}; "
+            "a resampling scheme returns indices, not weights"
+        )
     if bel.log_w.ndim == 1:
         state = bel.state.take(ancestors, axis=1)
     else:
@@ -152,11 +210,32 @@ def resample(
     -------
     Particles with equal weights
 
+    Raises
+    ------
+    ParameterError, ShapeError
+        If an argument is not what it should be, or the scheme does not return n indices.
+
     Notes
     -----
     Source: Probabilistic Robotics, Table 4.3, lines 8 to 11.
     """
-    return select(bel, scheme(bel.w, rng, n))
+    require_particles(bel)
+    n = bel.M if n is None else require_count("n", n)
+    return select(bel, _draw(scheme, bel.w, rng, n))
+
+
+def _draw(scheme: Resampler, w: Array, rng: np.random.Generator, n: int) -> NDArray[np.int64]:
+    """Ancestors from a resampling scheme, which may be a student's own."""
+    require_rng(rng)
+    if not callable(scheme):
+        raise ParameterError(f"scheme must be a function, got {scheme!r:.60}; e.g. pf.systematic")
+    ancestors = scheme(w, rng, n)
+    if np.shape(ancestors) != (*w.shape[:-1], n):
+        raise ShapeError(
+            f"the scheme must return indices of shape {(*w.shape[:-1], n)}, got "
+            f"{np.shape(ancestors)}; one ancestor for each new particle"
+        )
+    return ancestors
 
 
 def step(
@@ -167,7 +246,8 @@ def step(
     sensor: SensorModel,
     rng: np.random.Generator,
     scheme: Resampler = systematic,
-    threshold: float = 0.5,
+    threshold: float | Trigger = 0.5,
+    k: int = 0,
 ) -> tuple[Particles, Info]:
     """One turn of the filter: predict, update, resample if ESS < threshold * M.
 
@@ -175,32 +255,42 @@ def step(
     ----------
     bel, u, z, motion, sensor, rng, scheme
         As in `predict`, `update` and `resample`.
-    threshold : float in [0, 1]
-        0 never resamples; 1 resamples after every informative measurement.
+    threshold : float in [0, 1], or a function (bel, k) -> bool
+        0 never resamples; 1 resamples after every informative measurement. For other rules see
+        `pfkit.triggers`.
+    k : int
+        Number of the step, for triggers that count.
 
     Returns
     -------
     Particles
     Info
 
+    Raises
+    ------
+    ParameterError, ShapeError, DataError, DegenerateWeightsError
+        As `predict`, `update` and `resample`.
+
     Notes
     -----
     In a batch only those filters resample whose own ESS is low.
     """
+    trigger = threshold if callable(threshold) else ess_below(threshold)
     bel = predict(bel, u, motion, rng)
     bel, log_evidence = update(bel, z, sensor)
     ess = bel.ess
     ancestors = np.broadcast_to(np.arange(bel.M, dtype=np.int64), bel.log_w.shape)
-    poor = np.asarray(ess < threshold * bel.M)
     if z is None or _columns(z) == 0:
-        poor = np.zeros_like(poor)
+        poor = np.zeros(np.shape(ess), dtype=bool)
+    else:
+        poor = np.broadcast_to(np.asarray(trigger(bel, k), dtype=bool), np.shape(ess))
     if not poor.any():
         return bel, Info(log_evidence, ess, poor[()], ancestors)
     if poor.ndim == 0:
-        ancestors = scheme(bel.w, rng)
+        ancestors = _draw(scheme, bel.w, rng, bel.M)
         return select(bel, ancestors), Info(log_evidence, ess, poor[()], ancestors)
     ancestors = ancestors.copy()
-    ancestors[poor] = scheme(bel.w[poor], rng)
+    ancestors[poor] = _draw(scheme, bel.w[poor], rng, bel.M)
     copies = select(bel, ancestors)
     log_w = np.where(poor[..., None], copies.log_w, bel.log_w)
     return Particles(copies.state, log_w), Info(log_evidence, ess, poor, ancestors)
@@ -247,7 +337,7 @@ def run(
     sensor: SensorModel,
     rng: np.random.Generator,
     scheme: Resampler = systematic,
-    threshold: float = 0.5,
+    threshold: float | Trigger = 0.5,
     estimator: Callable[[Particles], Array] = mean_pose,
     watch: Callable[[int, Particles, Info], object] | None = None,
 ) -> History:
@@ -267,14 +357,22 @@ def run(
     Returns
     -------
     History
+
+    Raises
+    ------
+    ParameterError, ShapeError, DataError, DegenerateWeightsError
+        As `step`.
     """
-    require_fraction("threshold", threshold)
+    if not isinstance(log, Log):
+        raise ParameterError(f"log must be a Log, got {log!r:.60}; build one with pf.Log(t, u, z)")
+    require_particles(bel)
+    require_rng(rng)
     T, D, batch = len(log), bel.state.shape[0], bel.log_w.shape[:-1]
     estimate, spread = np.empty((D, T, *batch)), np.empty((D, D, T, *batch))
     ess, log_evidence = np.empty((T, *batch)), np.empty((T, *batch))
     resampled = np.zeros((T, *batch), dtype=bool)
     for k, (_, u, z, _) in enumerate(log):
-        bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold)
+        bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold, k)
         log_evidence[k], ess[k], resampled[k] = info.log_evidence, info.ess, info.resampled
         estimate[:, k], spread[:, :, k] = estimator(bel), covariance(bel)
         if watch is not None:

@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import require_components
+from pfkit.errors import ShapeError, require_components, require_finite
 
 TWO_PI = 2.0 * np.pi
 
@@ -34,9 +34,19 @@ def wrap(angle: ArrayLike) -> NDArray[np.float64]:
 
     Returns
     -------
-    array of the same shape, radians in (-pi, pi]
+    array of the same shape, radians in (-pi, pi] but for rounding
+
+    Raises
+    ------
+    ParameterError
+        If an angle is not a finite number.
+
+    Examples
+    --------
+    >>> wrap([0.0, np.pi, -np.pi, 2 * np.pi]).round(6)
+    array([0.      , 3.141593, 3.141593, 0.      ])
     """
-    angle = np.asarray(angle, dtype=float)
+    angle = require_finite("angle", angle)
     return angle - TWO_PI * np.ceil(angle / TWO_PI - 0.5)
 
 
@@ -57,8 +67,13 @@ def compose(pose: ArrayLike, motion: ArrayLike) -> NDArray[np.float64]:
 
     Raises
     ------
-    ShapeError
-        If the first axis of either argument does not have length 3.
+    ShapeError, ParameterError
+        If the first axis of either argument does not have length 3, or a value is not finite.
+
+    Examples
+    --------
+    >>> compose([1.0, 2.0, np.pi / 2], [3.0, 0.0, 0.0]).round(6)  # three metres ahead
+    array([1.      , 5.      , 1.570796])
     """
     x, y, theta = require_components("pose", pose, 3)
     dx, dy, dtheta = require_components("motion", motion, 3)
@@ -76,6 +91,11 @@ def inverse(pose: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     array (3, ...)
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If the first axis does not have length 3, or a value is not finite.
     """
     x, y, theta = require_components("pose", pose, 3)
     c, s = np.cos(theta), np.sin(theta)
@@ -94,6 +114,11 @@ def between(pose0: ArrayLike, pose1: ArrayLike) -> NDArray[np.float64]:
     Returns
     -------
     array (3, ...)
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If the first axis of either argument does not have length 3, or a value is not finite.
     """
     return compose(inverse(pose0), pose1)
 
@@ -118,9 +143,24 @@ def circular_mean(
     -------
     array (...), radians in (-pi, pi]. For directions that cancel exactly the mean is not
     defined and the result is arbitrary; look at the resultant length before you trust it.
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If an angle or a weight is not finite, there is nothing to average, or the two shapes
+        do not belong together.
+
+    Examples
+    --------
+    >>> circular_mean(np.radians([350.0, 30.0])).round(6)  # 10 degrees, not 190
+    array(0.174533)
     """
-    theta = np.asarray(theta, dtype=float)
-    weights = np.ones(()) if w is None else np.asarray(w, dtype=float)
+    theta = require_finite("theta", theta)
+    weights = np.ones(()) if w is None else require_finite("w", w)
+    if theta.ndim == 0 or theta.size == 0:
+        raise ShapeError(f"theta must have shape (..., M) with M >= 1, got {theta.shape}")
+    if weights.shape not in ((), theta.shape, theta.shape[-1:]):
+        raise ShapeError(f"w must have the shape of theta, {theta.shape}, got {weights.shape}")
     return np.arctan2(
         np.sum(weights * np.sin(theta), axis=axis), np.sum(weights * np.cos(theta), axis=axis)
     )

@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import DataError
+from pfkit.errors import DataError, as_numbers, require_finite
 
 
 class Step(NamedTuple):
@@ -54,11 +54,15 @@ class Log:
         Where the log came from, for tables and captions.
     outlier : sequence of T bool arrays (K,), optional
         True labels of false measurements, where they are known (simulations).
+    scored : bool array (T,), optional
+        Steps at which errors are to be scored; all if left out. A recorded log marks its
+        odometry stamps, so that a score does not depend on when the sensor spoke.
 
     Raises
     ------
     DataError
-        If the lengths differ or time runs backwards.
+        If a value is not a finite number (truth may be NaN where nobody filmed), shapes or
+        lengths do not belong together, or time runs backwards.
     """
 
     t: NDArray[np.float64]
@@ -69,12 +73,33 @@ class Log:
     world: Any = None
     source: str = ""
     outlier: Sequence[NDArray[np.bool_]] | None = field(default=None, repr=False)
+    scored: NDArray[np.bool_] | None = field(default=None, repr=False)
 
     def __post_init__(self) -> None:
+        for name in ("t", "u", "truth", "start"):
+            value = getattr(self, name)
+            if value is not None:
+                numbers = as_numbers if name == "truth" else require_finite
+                object.__setattr__(self, name, numbers(name, value, DataError))
+        if self.t.ndim != 1 or self.u.ndim < 2:
+            raise DataError(
+                f"a log needs t (T,) and u (n, T), got {self.t.shape} and {self.u.shape}; "
+                "components come first"
+            )
+        if self.truth is not None and self.truth.ndim < 2:
+            raise DataError(f"truth must have shape (3, T), got {self.truth.shape}")
+        bare = [k for k, zk in enumerate(self.z) if getattr(zk, "ndim", 0) < 2]
+        if bare:
+            raise DataError(
+                f"each z must be an array (n, K), got {self.z[bare[0]]!r:.60} at step {bare[0]}; "
+                "one measurement is one column"
+            )
         T = len(self.t)
         lengths = {"u": self.u.shape[1], "z": len(self.z)}
         if self.truth is not None:
             lengths["truth"] = self.truth.shape[1]
+        if self.scored is not None:
+            lengths["scored"] = len(self.scored)
         for name, length in lengths.items():
             if length != T:
                 raise DataError(f"log has {T} times but {length} columns of {name}; align them")
@@ -106,6 +131,7 @@ class Log:
             truth=None if self.truth is None else self.truth[:, part],
             start=start,
             outlier=None if self.outlier is None else self.outlier[part],
+            scored=None if self.scored is None else self.scored[part],
         )
 
     def __repr__(self) -> str:

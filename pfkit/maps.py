@@ -19,8 +19,11 @@ from pfkit.errors import (
     Shape,
     ShapeError,
     UnknownLandmarkError,
+    as_numbers,
     require_components,
     require_finite,
+    require_rng,
+    require_shape,
 )
 
 
@@ -49,17 +52,20 @@ class LandmarkMap:
 
     def __post_init__(self) -> None:
         positions = require_components("positions", self.positions, 2)
-        positions = require_finite("positions", positions)
         if positions.ndim != 2 or positions.shape[1] == 0:
             raise ShapeError(f"positions must have shape (2, L), L >= 1, got {positions.shape}")
         L = positions.shape[1]
-        ids = np.arange(L, dtype=np.int64) if self.ids is None else np.asarray(self.ids, np.int64)
+        ids = np.arange(L) if self.ids is None else require_finite("ids", self.ids)
+        if (ids % 1 != 0).any():
+            raise ParameterError(f"ids must be whole numbers, got {ids.tolist()}")
+        ids = ids.astype(np.int64)
         if ids.shape != (L,) or np.unique(ids).size != L:
             raise ParameterError(f"ids must be {L} different integers, got {ids.tolist()}")
         if self.bounds is None:
             (x0, y0), (x1, y1) = positions.min(axis=1), positions.max(axis=1)
         else:
-            x0, x1, y0, y1 = require_finite("bounds", self.bounds)
+            box = require_finite("bounds", self.bounds)
+            x0, x1, y0, y1 = box if box.shape == (4,) else np.zeros(4)
             if not (x0 < x1 and y0 < y1):
                 raise ParameterError(
                     f"bounds must be (x_min, x_max, y_min, y_max), got {self.bounds}"
@@ -91,7 +97,7 @@ class LandmarkMap:
         UnknownLandmarkError
             If the map has no landmark of that id.
         """
-        wanted = np.asarray(ids)
+        wanted = as_numbers("landmark ids", ids, UnknownLandmarkError)
         at = np.minimum(np.searchsorted(self.ids, wanted, sorter=self._order), len(self) - 1)
         index = self._order[at]
         wrong = self.ids[index] != wanted
@@ -103,15 +109,35 @@ class LandmarkMap:
         return self.positions[:, index]
 
     def sample_poses(self, shape: Shape, rng: np.random.Generator) -> NDArray[np.float64]:
-        """Draw poses uniformly over the bounds, heading uniform on the circle: (3, *shape)."""
-        shape = (shape,) if isinstance(shape, int) else shape
+        """Draw poses uniformly over the bounds, heading uniform on the circle.
+
+        Parameters
+        ----------
+        shape : int M, or (B, M)
+        rng : numpy.random.Generator
+
+        Returns
+        -------
+        array (3, *shape), metres and radians
+        """
+        shape = require_shape("shape", shape)
+        require_rng(rng)
         x0, x1, y0, y1 = self.bounds
         low = np.array((x0, y0, -np.pi)).reshape(3, *(1,) * len(shape))
         high = np.array((x1, y1, np.pi)).reshape(3, *(1,) * len(shape))
         return high - (high - low) * rng.random((3, *shape))  # heading in (-pi, pi]
 
     def contains(self, x: ArrayLike, y: ArrayLike) -> NDArray[np.bool_]:
-        """Whether points lie inside the bounds; any shape, broadcast."""
+        """Whether points lie inside the bounds.
+
+        Parameters
+        ----------
+        x, y : array_like, metres; any shapes that broadcast
+
+        Returns
+        -------
+        bool array, of the common shape
+        """
         x0, x1, y0, y1 = self.bounds
-        x, y = np.asarray(x), np.asarray(y)
+        x, y = require_finite("x", x), require_finite("y", y)
         return (x0 <= x) & (x <= x1) & (y0 <= y) & (y <= y1)

@@ -31,7 +31,14 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_components, require_non_negative
+from pfkit.errors import (
+    ParameterError,
+    ShapeError,
+    require_components,
+    require_finite,
+    require_non_negative,
+    require_rng,
+)
 from pfkit.geometry import between, wrap
 
 Array = NDArray[np.float64]
@@ -47,6 +54,7 @@ class MotionModel(Protocol):
 
 def draw_noise(variance: ArrayLike, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
     """Zero-mean Gaussian noise of a given variance: one number for each entry of the shape."""
+    require_rng(rng)
     return np.sqrt(variance) * rng.standard_normal(shape)
 
 
@@ -77,13 +85,18 @@ def drive_arc(pose: Array, distance: ArrayLike, turn: ArrayLike) -> Array:
     -------
     array (3, ...), the pose at the end of the arc
 
+    Raises
+    ------
+    ShapeError, ParameterError
+        If the pose does not have three components, or a value is not finite.
+
     Notes
     -----
     Source: Probabilistic Robotics, eq. 5.9, with its division by omega removed.
     """
-    x, y, theta = pose
-    half = 0.5 * np.asarray(turn, dtype=float)
-    chord = np.asarray(distance, dtype=float) * np.sinc(half / np.pi)
+    x, y, theta = require_components("pose", pose, 3)
+    half = 0.5 * require_finite("turn", turn)
+    chord = require_finite("distance", distance) * np.sinc(half / np.pi)
     direction = theta + half
     end = np.empty((3, *np.broadcast_shapes(np.shape(x), np.shape(chord))))
     end[0] = x + chord * np.cos(direction)

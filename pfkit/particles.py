@@ -36,8 +36,11 @@ from pfkit.errors import (
     ParameterError,
     Shape,
     ShapeError,
-    require_components,
+    as_numbers,
     require_finite,
+    require_method,
+    require_non_negative,
+    require_rng,
     require_shape,
 )
 from pfkit.geometry import wrap
@@ -63,21 +66,34 @@ class Particles:
 
     Raises
     ------
-    ShapeError
-        If the shapes do not belong together, or the set is empty.
+    ShapeError, ParameterError, DegenerateWeightsError
+        If the shapes do not belong together, the set is empty, a state is not finite, or
+        `log_w` cannot be logarithms of weights that sum to one.
     """
 
     state: NDArray[np.float64]
     log_w: NDArray[np.float64]
 
     def __post_init__(self) -> None:
+        object.__setattr__(self, "state", require_finite("state", self.state))
+        object.__setattr__(self, "log_w", as_numbers("log_w", self.log_w))
         if self.state.ndim < 2 or self.state.shape[1:] != self.log_w.shape:
             raise ShapeError(
                 f"state (D, M) and log_w (M,) must match, got {self.state.shape} and "
                 f"{self.log_w.shape}; components come first, so transpose an (M, D) array"
             )
-        if self.log_w.shape[-1] == 0:
-            raise ShapeError("a particle set must not be empty, got M = 0; draw at least one")
+        if self.log_w.size == 0:
+            raise ShapeError(
+                f"a particle set must not be empty, got shape {self.log_w.shape}; draw at least one"
+            )
+        peak = self.log_w.max(axis=-1)
+        if not (peak < 1e-9).all():
+            raise ParameterError(
+                f"log_w must be logarithms of weights that sum to 1, got {np.max(peak)}; "
+                "build a set from linear weights with from_weights"
+            )
+        if np.isneginf(peak).any():
+            raise DegenerateWeightsError("every weight is 0: log_w is -inf; draw new particles")
 
     @property
     def w(self) -> NDArray[np.float64]:
@@ -99,8 +115,25 @@ class Particles:
         return f"Particles({shape} of dimension {self.state.shape[0]}, ESS {np.mean(self.ess):.1f})"
 
 
+def require_particles(bel: object) -> Particles:
+    """Return `bel`; raise `ParameterError` unless it is a particle set."""
+    if not isinstance(bel, Particles):
+        raise ParameterError(
+            f"bel must be Particles, got {bel!r:.60}; build them with from_weights(state, w)"
+        )
+    return bel
+
+
+def _log_weights(log_w: ArrayLike) -> NDArray[np.float64]:
+    """Log-weights as a float array (..., M); M >= 1."""
+    log_w = as_numbers("log_w", log_w)
+    if log_w.ndim == 0 or log_w.size == 0:
+        raise ShapeError(f"log_w must have shape (..., M) with M >= 1, got {log_w.shape}")
+    return log_w
+
+
 def normalise(
-    log_w: NDArray[np.float64],
+    log_w: ArrayLike,
 ) -> tuple[NDArray[np.float64], NDArray[np.float64] | np.float64]:
     r"""Shift log-weights so that their weights sum to one.
 
@@ -123,45 +156,91 @@ def normalise(
     ------
     DegenerateWeightsError
         If all weights of a set are zero, or one is NaN or infinite.
+    ParameterError, ShapeError
+        If `log_w` is not an array of numbers, or it is empty.
+
+    Examples
+    --------
+    >>> log_w, log_sum = normalise(np.array([-1000.0, -1000.0]))  # exp() would give 0 / 0
+    >>> np.exp(log_w), (log_sum + 1000.0).round(6)
+    (array([0.5, 0.5]), 0.693147)
     """
+    log_w = _log_weights(log_w)
     peak = log_w.max(axis=-1, keepdims=True)
     if not np.isfinite(peak).all():
         bad = peak[~np.isfinite(peak)].flat[0]
-        what = "every particle has weight 0" if bad == -np.inf else f"a log-weight is {bad}"
+        if bad != -np.inf:
+            raise DegenerateWeightsError(
+                f"a log-weight is {bad}: a likelihood is not a number or not finite; look for a "
+                "division by zero or the logarithm of a negative number in the sensor model"
+            )
         raise DegenerateWeightsError(
-            f"{what}: the measurement is impossible for all {log_w.shape[-1]} particles. "
-            "Widen the sensor noise, wrap the sensor in OutlierMixture, use more particles, "
-            "or check that measurement and map share their units"
+            f"every particle has weight 0 (log-weight {bad}): the measurement is impossible for "
+            f"all {log_w.shape[-1]} of them. Widen the sensor noise, wrap the sensor in "
+            "OutlierMixture, use more particles, or check the units of measurement and map"
         )
     log_sum = peak + np.log(np.exp(log_w - peak).sum(axis=-1, keepdims=True))
     return log_w - log_sum, log_sum[..., 0]
 
 
-def ess(log_w: NDArray[np.float64]) -> NDArray[np.float64] | np.float64:
-    r"""Effective sample size of normalised log-weights.
+def ess(log_w: ArrayLike) -> NDArray[np.float64] | np.float64:
+    r"""Effective sample size.
 
-    .. math:: \mathrm{ESS} = \frac{1}{\sum_m (w^{[m]})^2}
+    .. math:: \mathrm{ESS} = \frac{(\sum_m w^{[m]})^2}{\sum_m (w^{[m]})^2}
 
     Parameters
     ----------
-    log_w : array (..., M), normalised
+    log_w : array (..., M)
+        Log-weights. Their scale does not matter, as long as exp() neither over- nor underflows.
 
     Returns
     -------
     array (...), between 1 and M
 
+    Raises
+    ------
+    DegenerateWeightsError
+        If all weights are zero, or one is NaN or infinite.
+    ParameterError, ShapeError
+        If `log_w` is not an array of numbers, or it is empty.
+
     Notes
     -----
     Source: A. Kong, J. S. Liu and W. H. Wong, "Sequential imputations and Bayesian missing
     data problems", JASA 89 (1994). ESS = M / (1 + CV^2) with CV the coefficient of variation.
+
+    Examples
+    --------
+    >>> ess(np.log([0.5, 0.25, 0.25])).round(3)
+    2.667
     """
-    w = np.exp(log_w)
-    return 1.0 / np.einsum("...m,...m->...", w, w)
+    with np.errstate(over="ignore"):
+        w = np.exp(_log_weights(log_w))
+    total, squares = w.sum(axis=-1), np.einsum("...m,...m->...", w, w)
+    if not ((squares > 0) & (squares < np.inf)).all():
+        raise DegenerateWeightsError(
+            f"no effective sample size: the weights sum to {np.max(total)}; normalise() them first"
+        )
+    return total * total / squares
 
 
 def equal_log_weights(shape: Shape) -> NDArray[np.float64]:
-    """Log-weights of a set in which every particle counts the same: ``-log M``."""
-    shape = (shape,) if isinstance(shape, int) else shape
+    """Log-weights of a set in which every particle counts the same: ``-log M``.
+
+    Parameters
+    ----------
+    shape : int M, or (B, M)
+
+    Returns
+    -------
+    array (M,) or (B, M)
+
+    Raises
+    ------
+    ParameterError
+        If a number of particles is not a whole number of at least 1.
+    """
+    shape = require_shape("number of particles M", shape)
     return np.full(shape, -np.log(shape[-1]))
 
 
@@ -216,11 +295,18 @@ def uniform_prior(M: Shape, world: SamplesPoses, rng: np.random.Generator) -> Pa
     -------
     Particles with equal weights
 
+    Raises
+    ------
+    ParameterError
+        If M is not a whole number of at least 1, or `world` cannot draw poses.
+
     Notes
     -----
     Source: Probabilistic Robotics, Table 8.2 and section 8.3.1 (global localisation).
     """
     shape = require_shape("number of particles M", M)
+    require_method("world", world, "sample_poses")
+    require_rng(rng)
     return Particles(world.sample_poses(shape, rng), equal_log_weights(shape))
 
 
@@ -249,10 +335,11 @@ def gaussian_prior(
     """
     mean, Sigma = require_finite("mean", mean), require_finite("Sigma", Sigma)
     shape, D = require_shape("number of particles M", M), mean.size
-    if mean.ndim != 1 or Sigma.shape not in ((D,), (D, D)):
+    require_rng(rng)
+    if mean.ndim != 1 or D == 0 or Sigma.shape not in ((D,), (D, D)):
         raise ShapeError(f"mean (D,) needs Sigma (D,) or (D, D), got {mean.shape}, {Sigma.shape}")
     if Sigma.ndim == 1:
-        Sigma = np.diag(Sigma**2)
+        Sigma = np.diag(require_non_negative("Sigma", Sigma) ** 2)
     values, vectors = np.linalg.eigh(Sigma)
     if not np.allclose(Sigma, Sigma.T) or values[0] < -1e-9 * max(values[-1], 1.0):
         raise ParameterError(f"Sigma must be symmetric and positive, got eigenvalues {values}")
@@ -261,4 +348,4 @@ def gaussian_prior(
     state = mean.reshape(D, *(1,) * len(shape)) + noise
     if heading and D >= 3:
         state[2] = wrap(state[2])
-    return Particles(require_components("state", state, D), equal_log_weights(shape))
+    return Particles(state, equal_log_weights(shape))

@@ -26,7 +26,6 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     DataError,
     require_components,
-    require_finite,
     require_fraction,
     require_non_negative,
     require_positive,
@@ -45,6 +44,10 @@ class _Wrapper(Sensor):
     def components(self) -> int:  # type: ignore[override]
         """Rows of a measurement, those of the wrapped sensor."""
         return self.sensor.components
+
+    def check_state(self, pose: ArrayLike) -> Array:
+        """Return a state that the wrapped sensor can read."""
+        return self.sensor.check_state(pose)
 
     def expected(self, pose: Array, **which: Any) -> Array:
         """What an honest measurement would be."""
@@ -139,7 +142,8 @@ class Gate(_Wrapper):
 
     def accepts(self, z: ArrayLike, pose: Array) -> NDArray[np.bool_]:
         """Which measurements (n, K) a set of poses (3, M) lets pass: (K,), or (K, B)."""
-        z = require_finite("z", require_components("z", z, self.components), DataError)
+        z = require_components("z", z, self.components, DataError)
+        pose = self.check_state(pose)
         means = [
             _mean_density(self.sensor.log_density(z[:, k], pose))[..., 0] for k in range(z.shape[1])
         ]
