@@ -1,0 +1,129 @@
+"""Importance weights upside down, forgotten, or kept where they should be reset."""
+
+import numpy as np
+
+from pfkit.labs.items import Misconception
+
+
+def inverse_ratio(values, target, proposal):
+    w = proposal / target
+    return np.sum(w * values) / np.sum(w)
+
+
+def target_only(values, target, proposal):
+    return np.sum(target * values) / np.sum(target)
+
+
+def plain_mean(values, target, proposal):
+    return np.mean(values)
+
+
+def not_normalised(values, target, proposal):
+    return np.mean(target / proposal * values)
+
+
+ESTIMATE = (
+    Misconception(
+        "inverse-ratio",
+        "divides the proposal by the target: the weights are upside down",
+        (
+            "A value that the proposal draws too seldom must count more, not less.",
+            "Check one sample: target .5, proposal .2. Should it weigh 2.5 or .4?",
+            "The weight is target / proposal.",
+        ),
+        inverse_ratio,
+    ),
+    Misconception(
+        "target-only",
+        "weighs by the target alone",
+        (
+            "The samples are already dense where the proposal is high. Is that counted twice?",
+            "The weight corrects for how the samples were drawn, so the proposal appears in it.",
+            "The weight is target / proposal.",
+        ),
+        target_only,
+    ),
+    Misconception(
+        "plain-mean",
+        "is the plain mean of the samples",
+        (
+            "The samples come from the proposal, so their plain mean is the mean of the proposal.",
+            "Weigh each sample by how much more the target wants it than the proposal gives it.",
+            "Return sum(w * values) / sum(w) with w = target / proposal.",
+        ),
+        plain_mean,
+    ),
+    Misconception(
+        "not-normalised",
+        "does not divide by the sum of the weights",
+        (
+            "Multiply the target by 7. The estimate should not change.",
+            "In a filter we know the target only up to a constant.",
+            "Divide by sum(w), not by the number of samples.",
+        ),
+        not_normalised,
+    ),
+)
+
+
+def weights_kept(state, w, ancestors):
+    return state[:, ancestors], w
+
+
+def weights_carried(state, w, ancestors):
+    kept = w[ancestors]
+    return state[:, ancestors], kept / kept.sum()
+
+
+def weights_one(state, w, ancestors):
+    return state[:, ancestors], np.ones(len(ancestors))
+
+
+def states_kept(state, w, ancestors):
+    return state, np.full(len(ancestors), 1 / len(ancestors))
+
+
+SELECT = (
+    Misconception(
+        "weights-kept",
+        "keeps the old weights after resampling",
+        (
+            "Resampling turned weight into copies. What would the old weights count again?",
+            "Each copy now stands for the same share of the belief.",
+            "After resampling n particles, every weight is 1/n.",
+        ),
+        weights_kept,
+    ),
+    Misconception(
+        "weights-carried",
+        "lets each copy carry the weight of its ancestor",
+        (
+            "A particle of weight .4 became two of five copies. Which share do they have together?",
+            "Number of copies times weight of a copy must give the old weight, on average.",
+            "After resampling n particles, every weight is 1/n.",
+        ),
+        weights_carried,
+    ),
+    Misconception(
+        "weights-one",
+        "sets all weights to 1",
+        (
+            "Weights of a belief sum to one. Yours sum to the number of particles.",
+            "Equal is right; now normalise.",
+            "After resampling n particles, every weight is 1/n.",
+        ),
+        weights_one,
+    ),
+    Misconception(
+        "states-kept",
+        "resets the weights but does not copy the states",
+        (
+            "Compare the states before and after. Who survived?",
+            "The ancestors are column numbers of the state array.",
+            "Index the columns: state[:, ancestors].",
+        ),
+        states_kept,
+    ),
+)
+
+MUTANTS = {"lab3": {"p2b": ESTIMATE, "q4d": SELECT}}
