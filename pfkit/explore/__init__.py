@@ -21,6 +21,7 @@ __all__ = ["SCENES", "Control", "Mission", "Panel", "Scene", "scene"]
 
 SCENES = {
     "comb": ("pfkit.explore.comb", "Comb"),
+    "drive": ("pfkit.explore.drive", "Drive"),
 }
 
 

@@ -79,16 +79,7 @@ class Comb(Scene):
     rate = 6.0
     record_steps = 60
     record_every = 1
-    units: ClassVar[dict[str, str]] = {
-        "draws": "",
-        "multinomial": "copies²",
-        "stratified": "copies²",
-        "systematic": "copies²",
-        "residual": "copies²",
-        "wheel": "copies²",
-        "generation": "",
-        "founders left": "of 24",
-    }
+    units: ClassVar[dict[str, str]] = {"founders left": "of 24"}
     all_controls = (
         Control(
             "weights",
@@ -179,8 +170,8 @@ class Comb(Scene):
         self._draw_once()
 
     def advance(self) -> None:
-        for _ in range(int(self.values["pace"])):
-            self._draw_once()
+        for k in range(int(self.values["pace"]) - 1, -1, -1):
+            self._draw_once(show=k == 0)
         log_w = self.values["spread"] * self.rng.standard_normal(FAMILY)
         w = np.exp(log_w - log_w.max())
         parents = FIVE[self.values["scheme"]](w / w.sum(), self.rng, FAMILY)
@@ -188,14 +179,15 @@ class Comb(Scene):
         self.family = self.family[parents]
         self.founders = np.unique(self.family).size
 
-    def _draw_once(self) -> None:
+    def _draw_once(self, show: bool = True) -> None:
         for name, scheme in FIVE.items():
-            before = copy.deepcopy(self.rng)
+            before = copy.deepcopy(self.rng) if show else self.rng
             picks = scheme(self.w, self.rng, self.n)
             count = np.bincount(picks, minlength=5)
             self.sum[name] += count
             self.square[name] += count**2
-            self.shown[name] = (picks, teeth(name, self.w, picks, before))
+            if show:
+                self.shown[name] = (picks, teeth(name, self.w, picks, before))
         self.draws += 1
 
     def variance(self, name: str) -> float:
@@ -221,8 +213,8 @@ class Comb(Scene):
                 middle = (edges[i] + edges[i + 1]) / 2
                 pen.text("paper", middle, 0.52, LETTERS[i], size=15, anchor=0)
         pen.view((0.69, 0.87, 0.29, 0.11), (0, 1), (0, 1), frame=False)
-        pen.text("muted", 0, 0.72, "summed variance", size=11)
-        pen.text("muted", 0, 0.22, f"of the counts, {self.draws} draws", size=11)
+        pen.text("muted", 0, 0.72, "variance of counts", size=11)
+        pen.text("muted", 0, 0.22, f"{self.draws} draws", size=11)
         reference = float((self.n * self.w * (1 - self.w)).sum())
         for row, name in enumerate(FIVE):
             self._draw_row(pen, name, 0.755 - 0.107 * row, edges, reference)
@@ -249,7 +241,7 @@ class Comb(Scene):
         pen.bars("accent", 0, 0.72 * min(value / (1.4 * reference), 1.0), 0.1, 0.5)
         mark = 0.72 / 1.4
         pen.segments("ink", mark, 0.02, mark, 0.6, width=1.5)
-        pen.text("ink", 0.76, 0.3, f"{value:.3f}", size=12)
+        pen.text("ink", 0.75, 0.3, f"{value:.3f}", size=12)
 
     def _draw_family(self, pen: Pen) -> None:
         pen.view((0.02, 0.03, 0.96, 0.22), (0, STRIP), (-0.5, FAMILY - 0.5), frame=True)

@@ -24,7 +24,7 @@ first: all x, then all y. Coordinates are data units of the last `view`; sizes a
  11   image       nx, ny, x0, x1, y0, y1, cells..  (row by row from y0; 0 clear, 1 full colour)
  12   text        x, y, size, anchor (-1 left, 0 middle, 1 right), code points..
  13   symbols     shape, size, x.., y..            (shape: index into `SHAPES`)
- 14   quills      length, x.., y.., theta..        (short heading ticks)
+ 14   quills      length, size, x.., y.., theta..     (dots with a short tick for the heading)
  15   ticks       side (0 below, 1 left), values..
 ====  ==========  ==================================================================================
 """
@@ -163,8 +163,10 @@ class Pen:
     def symbols(self, style: str, shape: str, x: ArrayLike, y: ArrayLike, size=9.0) -> None:
         self._add("symbols", style, _SHAPE[shape], size, *np.broadcast_arrays(x, y))
 
-    def quills(self, style: str, x: ArrayLike, y: ArrayLike, theta: ArrayLike, length=7) -> None:
-        self._add("quills", style, length, *np.broadcast_arrays(x, y, theta))
+    def quills(
+        self, style: str, x: ArrayLike, y: ArrayLike, theta: ArrayLike, length=7, size=3.0
+    ) -> None:
+        self._add("quills", style, length, size, *np.broadcast_arrays(x, y, theta))
 
     def ticks(self, side: int, values: ArrayLike) -> None:
         self._add("ticks", "muted", side, values)

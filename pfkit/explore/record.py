@@ -23,7 +23,7 @@ from pfkit.explore.scene import Scene
 
 LEVELS = 1000
 EXACT = {"view", "text", "ticks", "bars", "robots", "symbols", "line", "area"}
-LEAD = {"points": 1, "segments": 1, "ellipses": 2, "stems": 2, "image": 6, "quills": 1}
+LEAD = {"points": 1, "segments": 1, "ellipses": 2, "stems": 2, "image": 6, "quills": 2}
 ROWS = {"points": 2, "bubbles": 3, "segments": 4, "ellipses": 5, "stems": 2, "image": 1}
 ROWS["quills"] = 3
 

@@ -201,12 +201,13 @@ class Still:
             self.out.append(f'<polygon points="{corners}" fill="{colour}"/>')
 
     def quills(self, d: np.ndarray, colour: str) -> None:
-        x, y, theta = self._rows(d, 1, 3, MOST)
+        x, y, theta = self._rows(d, 2, 3, MOST)
         a, b = self.X(x), self.Y(y)
         c, e = a + d[0] * np.cos(theta), b - d[0] * np.sin(theta)
         ends = zip(a, b, c, e, strict=True)
         path = "".join(f"M{p:.1f} {q:.1f}L{r:.1f} {s:.1f}" for p, q, r, s in ends)
         self._path(path, colour, 0.8)
+        self._discs(x, y, d[1] / 2, colour, 0.6)
 
     def ticks(self, d: np.ndarray, colour: str) -> None:
         for value in np.asarray(d[1:], float):

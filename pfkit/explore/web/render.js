@@ -7,7 +7,7 @@
   const STYLES = ["ink", "muted", "grid", "particle", "truth", "estimate", "landmark", "ray",
     "accent", "good", "bad", "target", "proposal", "wall", "c1", "c2", "c3", "c4", "c5", "paper"];
   const SHAPES = ["circle", "square", "diamond", "cross", "triangle", "plus", "star"];
-  const LEAD = { 2: 1, 4: 1, 9: 2, 10: 2, 11: 6, 14: 1 };
+  const LEAD = { 2: 1, 4: 1, 9: 2, 10: 2, 11: 6, 14: 2 };
   const ROWS = { 2: 2, 3: 3, 4: 4, 9: 5, 10: 2, 11: 1, 14: 3 };
   const EXACT = new Set([1, 5, 6, 7, 8, 12, 13, 15]);
   const LIGHT = {
@@ -356,16 +356,19 @@
     }
 
     quills(d) {
-      const n = (d.length - 1) / 3, c = this.context, length = d[0];
+      const n = (d.length - 2) / 3, c = this.context, length = d[0], r = d[1] / 2;
       c.lineWidth = 1;
-      c.globalAlpha = Math.max(0.2, Math.min(0.8, 60 / Math.sqrt(n * 60 + 1)));
+      c.globalAlpha = Math.max(0.25, Math.min(0.8, 70 / Math.sqrt(n * 60 + 1)));
+      const dots = new Path2D();
       c.beginPath();
-      for (let k = 1; k <= n; k++) {
+      for (let k = 2; k < 2 + n; k++) {
         const x = this.X(d[k]), y = this.Y(d[k + n]), a = d[k + 2 * n];
         c.moveTo(x, y);
         c.lineTo(x + length * Math.cos(a), y - length * Math.sin(a));
+        dots.rect(x - r, y - r, 2 * r, 2 * r);
       }
       c.stroke();
+      c.fill(dots);
     }
 
     ticks(d) {

@@ -1,0 +1,312 @@
+"""Drive and localise: the course's robot, under the reader's hands.
+
+A robot drives through an arena with a few landmarks. It measures ranges and bearings to those it
+can see, and a particle filter guesses where it is. Everything here calls `pfkit` exactly as the
+chapters do: `predict`, `update`, `resample`. Panels choose what the reader can move; see
+`pfkit.explore.drive_panels`. The drawing is in `pfkit.explore.drive_view`.
+
+Time runs in ticks of 1/30 s. The robot and the particles move in every tick; it looks about every
+twelfth. The robot's noise and the filter's idea of it are two numbers, so that they can disagree.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+import pfkit as pf
+from pfkit.explore.drive_panels import CONTROLS, PANELS
+from pfkit.explore.drive_view import draw_drive
+from pfkit.explore.pen import Pen
+from pfkit.explore.scene import Panel, Readouts, Scene
+
+DT = 1 / 30
+LOOK_EVERY = 12
+ALPHA = np.array([0.20, 0.02, 0.25, 0.20, 0.02, 0.02])
+ROUTES = {
+    "arena": np.array([[2.0, 8.0, 8.4, 5.0, 1.6], [2.4, 1.6, 6.0, 4.6, 6.6]]),
+    "square": np.array([[7.5, 12.5, 12.5, 7.5, 2.5, 2.5], [2.5, 2.5, 12.5, 12.5, 12.5, 2.5]]),
+}
+RANGE_MAX = 12.0  # metres; false readings are uniform up to here
+
+
+class Drive(Scene):
+    name = "drive"
+    size = (760, 470)
+    rate = 60.0
+    record_steps = 480
+    record_every = 10
+    still_at = 150
+    all_controls = CONTROLS
+    panels: ClassVar[dict[str, Panel]] = PANELS
+    units: ClassVar[dict[str, str]] = {
+        "time": "s",
+        "error": "m",
+        "heading error": "°",
+        "spread": "m",
+        "ESS": "",
+        "resampled": "times",
+        "hypotheses": "alive",
+        "heaviest": "% of mass",
+        "false readings": "",
+        "rejected": "",
+        "likely area": "m²",
+        "information": "nats",
+    }
+
+    # ---- the world --------------------------------------------------------------------------
+    def start(self) -> None:
+        v = self.values
+        self.layout = "square" if v["world"] == "square" else "arena"
+        world = pf.worlds.square() if self.layout == "square" else pf.worlds.arena()
+        self.landmarks = world.positions.copy()
+        self.bounds = world.bounds
+        if self.layout == "square":
+            self.bounds = (0.0, 15.0, 0.0, 15.0)
+        self.selected = 0
+        self.driver = pf.PurePursuit(ROUTES[self.layout], v=1.0, dt=DT, lookahead=0.9)
+        first, second = ROUTES[self.layout].T[:2]
+        self.truth = np.array([*first, np.arctan2(*(second - first)[::-1])])
+        self.goal: tuple[float, float] | None = None
+        self.z = np.empty((0, 0))
+        self.z_age, self.false = 99, np.empty(0, bool)
+        self.counts = {"resampled": 0, "false": 0, "rejected": 0}
+        self.kidnapped = False
+        self.history: list[tuple[float, float]] = []
+        self.trail: list[np.ndarray] = [self.truth.copy()]
+        self._build()
+        self.bel = self._prior(int(v["M"]))
+        self.ess = float(self.bel.ess)
+        self._judge_filter()
+
+    def _prior(self, M: int) -> pf.Particles:
+        if self.values["prior"] == "known":
+            return pf.gaussian_prior(M, self.truth, np.array([0.2, 0.2, 0.1]), self.rng)
+        return pf.uniform_prior(M, self.world, self.rng)
+
+    def _build(self) -> None:
+        """Make map, sensor and motion models from the controls as they stand."""
+        v = self.values
+        self.world = pf.LandmarkMap(self.landmarks, bounds=self.bounds)
+        sigma_r, sigma_phi = v["sigma_r"], np.radians(v["sigma_phi"])
+        if v["sense"] == "range":
+            self.real = pf.Range(self.world, sigma_r)
+            low, high = (0.0,), (RANGE_MAX,)
+        elif v["sense"] == "bearing":
+            self.real = pf.Bearing(self.world, sigma_phi)
+            low, high = (-np.pi,), (np.pi,)
+        else:
+            self.real = pf.RangeBearing(self.world, sigma_r, sigma_phi)
+            low, high = (0.0, -np.pi), (RANGE_MAX, np.pi)
+        self.faults = pf.Outliers(v["outliers"] / 100, low, high)
+        self.anonymous = not v["names"]
+        model: Any = pf.MaximumLikelihood(self.real) if self.anonymous else self.real
+        if v["defence"] == "gate":
+            model = pf.Gate(model, 10 ** v["gate"])
+        elif v["defence"] == "mixture":
+            model = pf.OutlierMixture(model, max(v["epsilon"] / 100, 1e-6), self.faults.density)
+        self.model = model
+        self.sight = pf.Sight(self.world, v["sight"])
+        self.motion = pf.VelocityMotion(tuple(ALPHA * v["noise"] ** 2))
+        self.believed = pf.VelocityMotion(tuple(ALPHA * (v["noise"] * v["trust"]) ** 2))
+
+    # ---- one tick ---------------------------------------------------------------------------
+    def advance(self) -> None:
+        v = self.values
+        u = self._command()
+        if v["moves"]:
+            self.truth = self._inside(self.motion.sample(self.truth, u, self.rng))
+        self.z_age += 1
+        if v["show"] != "map":
+            if v["do_predict"]:
+                self.bel = pf.predict(self.bel, u, self.believed, self.rng)
+            else:
+                self.bel = pf.Particles(self.believed.mean(self.bel.state, u), self.bel.log_w)
+        if self.ticks % LOOK_EVERY == LOOK_EVERY - 1:
+            self._look()
+        if self.ticks % 4 == 0:
+            self.trail = [*self.trail[-220:], self.truth.copy()]
+        self._judge_filter()
+
+    def _command(self) -> np.ndarray:
+        """What the robot is told: (v, omega, dt), by autopilot, keys or pointer."""
+        v = self.values
+        if not v["moves"]:
+            return np.array([0.0, 0.0, DT])
+        if v["hand"] == "landmark" and (v["throttle"] or v["steer"]):
+            self._nudge(-v["steer"] * 2.5 * DT, v["throttle"] * 2.5 * DT)
+            return np.array([0.0, 0.0, DT])
+        if self.goal is not None:
+            dx, dy = self.goal[0] - self.truth[0], self.goal[1] - self.truth[1]
+            turn = float(pf.wrap(np.arctan2(dy, dx) - self.truth[2]))
+            speed = min(1.4, 2 * np.hypot(dx, dy)) * max(0.0, np.cos(turn))
+            return np.array([speed, np.clip(4 * turn, -2.2, 2.2), DT])
+        if v["throttle"] or v["steer"]:
+            return np.array([1.2 * v["throttle"], 1.8 * v["steer"], DT])
+        if v["autopilot"]:
+            return self.driver(self.ticks, self.truth)
+        return np.array([0.0, 0.0, DT])
+
+    def _inside(self, pose: np.ndarray) -> np.ndarray:
+        x0, x1, y0, y1 = self.bounds
+        pose[:2] = np.clip(pose[:2], (x0 + 0.2, y0 + 0.2), (x1 - 0.2, y1 - 0.2))
+        return pose
+
+    def _look(self) -> None:
+        """Measure what is in sight, and let the filter use it."""
+        v = self.values
+        seen = self.world.ids[self.sight(self.truth)]
+        self.z_age = 0
+        self.seen = seen
+        if seen.size == 0:
+            self.z = np.empty((0, 0))
+            return
+        z = self.real.sample(self.truth, self.rng, ids=seen)
+        self.z, self.false = self.faults.spoil(z, self.rng)
+        self.counts["false"] += int(self.false.sum())
+        if v["show"] == "map" or not v["do_weigh"]:
+            return
+        given = self.z[:-1] if self.anonymous else self.z
+        if v["defence"] == "gate":
+            self.counts["rejected"] += int((~self.model.accepts(given, self.bel.state)).sum())
+        self.bel, _ = pf.update(self.bel, given, self.model)
+        self.ess = float(self.bel.ess)
+        if v["do_resample"] and self.ess < v["threshold"] * self.bel.M:
+            self.bel = pf.resample(self.bel, pf.SCHEMES[v["scheme"]], self.rng)
+            self.counts["resampled"] += 1
+            self._inject(v["fresh"] / 100)
+
+    def _inject(self, share: float) -> None:
+        """Replace a share of the equally weighted set by poses drawn anywhere."""
+        n = int(round(share * self.bel.M))
+        if n:
+            self.bel.state[:, self.rng.permutation(self.bel.M)[:n]] = self.world.sample_poses(
+                n, self.rng
+            )
+
+    def _judge_filter(self) -> None:
+        self.estimate = pf.mean_pose(self.bel)
+        self.Sigma = pf.covariance(self.bel)
+        dx, dy, turn = self.estimate - self.truth
+        self.error, self.turn_error = float(np.hypot(dx, dy)), abs(float(pf.wrap(turn)))
+        self.spread = float(np.sqrt(self.Sigma[0, 0] + self.Sigma[1, 1]))
+        if self.ticks % 4 == 0:
+            self.history = [*self.history[-159:], (self.ess / self.bel.M, self.error)]
+
+    def copies(self) -> np.ndarray:
+        """Poses (3, G) that the square cannot tell from the truth; the truth is the first."""
+        centre = 7.5
+        turns = np.arange(4) * np.pi / 2
+        dx, dy = self.truth[0] - centre, self.truth[1] - centre
+        x = centre + dx * np.cos(turns) - dy * np.sin(turns)
+        y = centre + dx * np.sin(turns) + dy * np.cos(turns)
+        return np.stack((x, y, pf.wrap(self.truth[2] + turns)))
+
+    def masses(self) -> np.ndarray:
+        """Share of the belief near each of those poses, shape (4,)."""
+        return pf.hypothesis_mass(self.bel, self.copies(), radius=1.5, angle=0.8)
+
+    # ---- the reader's hand ------------------------------------------------------------------
+    def changed(self, name: str, value: Any) -> None:
+        if name == "kidnap":
+            self._carry_off(None)
+        elif name == "point":
+            self._touch(*value)
+        elif name == "add":
+            self._place(self.world.sample_poses(1, self.rng)[:2, 0])
+        elif name == "fifth":
+            self._place(np.array([13.0, 7.5]))
+        elif name == "remove" and self.landmarks.shape[1] > 1:
+            self.landmarks = np.delete(self.landmarks, self.selected, axis=1)
+            self.selected = min(self.selected, self.landmarks.shape[1] - 1)
+            self.z = np.empty((0, 0))
+        elif name == "next":
+            self.selected = (self.selected + 1) % self.landmarks.shape[1]
+        self._build()
+
+    def _place(self, at: np.ndarray) -> None:
+        if self.landmarks.shape[1] < 12:
+            self.landmarks = np.append(self.landmarks, np.reshape(at, (2, 1)), axis=1)
+            self.selected = self.landmarks.shape[1] - 1
+
+    def _nudge(self, dx: float, dy: float) -> None:
+        x0, x1, y0, y1 = self.bounds
+        at = self.landmarks[:, self.selected] + (dx, dy)
+        self.landmarks[:, self.selected] = np.clip(at, (x0, y0), (x1, y1))
+        self._build()
+
+    def _carry_off(self, to: np.ndarray | None) -> None:
+        """Kidnap: the robot is put down elsewhere and the filter is not told."""
+        pose = self.world.sample_poses(1, self.rng)[:, 0] if to is None else to
+        self.truth = self._inside(np.array(pose))
+        self.kidnapped = True
+        self.trail = [self.truth.copy()]
+
+    def _touch(self, x: float, y: float, phase: float) -> None:
+        hand, at = self.values["hand"], np.array([x, y])
+        if hand == "drive":
+            self.goal = None if phase == 2 else (x, y)
+        elif hand == "robot":
+            moved = np.array([x, y, self.truth[2]])
+            if phase == 2 and self.values["show"] != "map":
+                self._carry_off(moved)
+            elif self.values["show"] == "map":
+                self.truth = self._inside(moved)
+        elif phase == 0:
+            gap = np.hypot(*(self.landmarks - at[:, None]))
+            self.selected = int(gap.argmin())
+            if gap.min() > 1.0:
+                self._place(at)
+        elif phase == 1:
+            self._nudge(*(at - self.landmarks[:, self.selected]))
+
+    # ---- what is shown ----------------------------------------------------------------------
+    def likelihood_map(self) -> tuple[np.ndarray, np.ndarray]:
+        """Log-likelihood over positions of the last reading, with the true heading: (ny, nx)."""
+        x0, x1, y0, y1 = self.bounds
+        nx, ny = 64, int(64 * (y1 - y0) / (x1 - x0))
+        x = x0 + (np.arange(nx) + 0.5) * (x1 - x0) / nx
+        y = y0 + (np.arange(ny) + 0.5) * (y1 - y0) / ny
+        theta = np.full((ny, nx), self.truth[2])
+        cells = np.stack((*np.meshgrid(x, y), theta)).reshape(3, -1)
+        # the map is redrawn while landmarks move: ask what the robot would read now, without noise
+        ids = self.world.ids[self.sight(self.truth)]
+        if ids.size == 0:
+            return np.zeros((ny, nx)), np.full((ny, nx), 1 / (nx * ny))
+        z = self.real.expected(self.truth, ids=ids)
+        log_p = self.model.log_likelihood(z[:-1] if self.anonymous else z, cells)
+        p = np.exp(log_p - log_p.max())
+        return log_p.reshape(ny, nx), (p / p.sum()).reshape(ny, nx)
+
+    def draw(self, pen: Pen) -> None:
+        draw_drive(self, pen)
+
+    def readouts(self) -> Readouts:
+        show = self.values["show"]
+        if show == "map":
+            x0, x1, y0, y1 = self.bounds
+            _, p = self.likelihood_map()
+            entropy = float(-(p * np.log(np.where(p > 0, p, 1.0))).sum())
+            cell = (x1 - x0) * (y1 - y0) / p.size
+            return {
+                "likely area": float(np.exp(entropy) * cell),
+                "information": float(np.log(p.size) - entropy),
+                "in sight": float(self.sight(self.truth).sum()),
+            }
+        out: Readouts = {
+            "time": self.ticks * DT,
+            "error": self.error,
+            "heading error": float(np.degrees(self.turn_error)),
+            "spread": self.spread,
+            "ESS": self.ess,
+            "resampled": float(self.counts["resampled"]),
+        }
+        if show == "copies":
+            masses = self.masses()
+            out["hypotheses"] = float((masses > 0.02).sum())
+            out["heaviest"] = float(100 * masses.max())
+        if self.values["outliers"] or self.values["defence"] != "none":
+            out["false readings"] = float(self.counts["false"])
+            out["rejected"] = float(self.counts["rejected"])
+        return out
