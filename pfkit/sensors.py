@@ -154,7 +154,8 @@ class Position(Sensor):
 
     Notes
     -----
-    With Sigma = S S^T the error is whitened, e = S^-1 nu, and the exponent is -|e|^2 / 2.
+    With Sigma = S S^T the error is whitened, e = S^-1 nu, and the exponent is minus half its
+    squared length.
     """
 
     sigma: ArrayLike | None = None
