@@ -186,7 +186,7 @@ def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
             "a resampling scheme returns indices, not weights"
         )
     if bel.log_w.ndim == 1:
-        state = bel.state.take(ancestors, axis=1)
+        state = np.take(bel.state, ancestors, axis=1)
     else:
         state = np.take_along_axis(bel.state, ancestors[None], axis=-1)
     return Particles(state, equal_log_weights(ancestors.shape))
