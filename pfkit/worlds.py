@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError, require_positive
 from pfkit.maps import LandmarkMap
+from pfkit.occupancy import OccupancyGrid
 
 
 def arena() -> LandmarkMap:
@@ -130,3 +131,44 @@ def circle_route(v: float = 0.5, dt: float = 0.5) -> NDArray[np.float64]:
     T = round(2 * np.pi * 5.0 / (v * dt))
     omega = 2 * np.pi / (T * dt)  # so that T whole steps close the circle
     return np.tile(np.array([[5.0 * omega], [omega], [dt]]), T)
+
+
+OFFICE_START = np.array([2.0, 4.0, 0.0])
+OFFICE_ROUTE = np.array([[1.5, 10.5, 10.5, 1.5], [4.0, 4.0, 1.5, 1.5]])
+OFFICE_WALLS = (  # x_min, x_max, y_min, y_max in metres
+    *((0.0, 12.0, 0.0, 0.2), (0.0, 12.0, 7.8, 8.0), (0.0, 0.2, 0.0, 8.0), (11.8, 12.0, 0.0, 8.0)),
+    *((0.0, 12.0, 3.0, 3.2), (0.0, 12.0, 4.8, 5.0)),  # the corridor
+    *((4.4, 4.6, 0.0, 3.0), (8.4, 8.6, 0.0, 3.0), (6.6, 6.8, 5.0, 8.0)),  # between rooms
+)
+OFFICE_DOORS = (
+    *((1.0, 2.0, 3.0, 3.2), (10.0, 11.0, 3.0, 3.2), (3.4, 4.4, 4.8, 5.0), (9.0, 10.0, 4.8, 5.0)),
+    *((4.4, 4.6, 1.0, 2.0), (8.4, 8.6, 1.0, 2.0)),
+)
+OFFICE_FURNITURE = ((5.6, 6.8, 0.2, 0.7), (0.2, 0.8, 6.0, 7.4), (9.8, 10.2, 6.4, 6.8))
+
+
+def office(resolution: float = 0.1) -> OccupancyGrid:
+    """Five rooms along a corridor, 12 m x 8 m, for a robot with a laser.
+
+    `OFFICE_ROUTE` goes along the corridor and back through the three lower rooms.
+
+    Parameters
+    ----------
+    resolution : float, > 0, metres per cell
+        Walls are 0.2 m thick; larger cells would lose them.
+
+    Raises
+    ------
+    ParameterError
+        If the resolution is not in (0, 0.2].
+    """
+    require_positive("resolution", resolution)
+    if resolution > 0.2:
+        raise ParameterError(f"cells of {resolution} m lose walls of 0.2 m; use at most 0.2")
+    x = resolution * (np.arange(round(12.0 / resolution)) + 0.5)
+    y = resolution * (np.arange(round(8.0 / resolution)) + 0.5)[:, None]
+    wall = np.zeros((y.size, x.size), dtype=bool)
+    for boxes, solid in ((OFFICE_WALLS, True), (OFFICE_DOORS, False), (OFFICE_FURNITURE, True)):
+        for x0, x1, y0, y1 in boxes:
+            wall[(x0 < x) & (x < x1) & (y0 < y) & (y < y1)] = solid
+    return OccupancyGrid(wall, resolution)

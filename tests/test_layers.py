@@ -20,7 +20,7 @@ PACKAGE = ROOT / "pfkit"
 LAYERS: dict[str, list[str]] = {
     "L0": ["errors", "chi2", "geometry"],
     "L1": [
-        *["particles", "log", "maps", "worlds", "occupancy", "distance", "raycast"],
+        *["particles", "log", "maps", "map_files", "occupancy", "worlds", "distance", "raycast"],
         *["resampling", "survival", "triggers", "genealogy"],
     ],
     "L2": [
@@ -28,14 +28,13 @@ LAYERS: dict[str, list[str]] = {
         *["association", "beams", "likelihood_field", "robust", "faults", "intermittent"],
     ],
     "L3": [
-        "estimators",
+        *["estimators", "kde", "modes"],
         "filters",
-        "adaptive",
+        *["recovery", "kld", "roughening"],
         *["kalman", "gaussian", "smoother"],
         *["histogram", "posegrid", "gridfilter"],
         "oracle",
         "tempering",
-        "modes",
     ],
     "L4": [
         *["odometry", "routes", "simulate", "datasets", "comparison", "table"],

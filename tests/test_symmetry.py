@@ -73,6 +73,18 @@ def test_copies_measure_the_same_unnamed_landmarks():
         assert same_set(np.stack((x[:, 0], y[:, 0])), np.stack((x[:, i], y[:, i]))) < 1e-9
 
 
+def test_copies_are_equally_likely_for_a_sensor_without_names():
+    world = worlds.square()
+    sensor = pf.MaximumLikelihood(pf.RangeBearing(world, 0.1, 0.05))
+    truth = np.array([1.0, 6.0, 0.7])
+    copies = pf.images(truth, pf.symmetries(world))
+    logs = sensor.log_likelihood(sensor.sample(truth, rng()), copies)
+    np.testing.assert_allclose(logs, logs[0])
+    mirrored = pf.images(truth * [1, -1, -1], pf.symmetries(world, mirror=True))
+    logs_mirrored = sensor.log_likelihood(sensor.sample(truth, rng()), mirrored)
+    assert logs_mirrored.max() < logs[0] - 10  # left and right have changed places
+
+
 def test_images_of_a_cloud_have_the_group_as_second_axis():
     cloud = rng().normal(size=(3, 7, 2))
     g = pf.symmetries(worlds.square())

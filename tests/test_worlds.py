@@ -62,3 +62,34 @@ def test_the_first_step_of_the_walk_through():
     u = np.array([[np.sqrt(2)], [0.0], [1.0]])
     _, truth = pf.drive(worlds.SIX_BEACONS_START, u, STILL, np.random.default_rng())
     np.testing.assert_allclose(truth[:, 0], [8.0, 8.0, np.pi / 4])
+
+
+def test_the_office_route_stays_free_of_walls():
+    grid = worlds.office()
+    driver = pf.PurePursuit(worlds.OFFICE_ROUTE, v=0.5, dt=0.2, lookahead=0.5)
+    _, truth = pf.drive(worlds.OFFICE_START, driver, STILL, np.random.default_rng(), steps=240)
+    assert grid.contains(*truth[:2]).all()
+    assert truth[0].max() > 10 and truth[1].min() < 1.8  # it went round
+    back = np.hypot(*(truth[:2, 200:] - worlds.OFFICE_START[:2, None]))
+    assert back.min() < 0.2
+
+
+def test_every_room_of_the_office_can_be_reached():
+    free = worlds.office().free
+    reached = np.zeros_like(free)
+    reached[40, 20] = True
+    for _ in range(400):  # flood from the corridor
+        grown = reached.copy()
+        grown[1:] |= reached[:-1]
+        grown[:-1] |= reached[1:]
+        grown[:, 1:] |= reached[:, :-1]
+        grown[:, :-1] |= reached[:, 1:]
+        reached = grown & free
+    assert (reached == free).all()
+    assert worlds.office(0.05).free.mean() == pytest.approx(free.mean(), abs=0.01)
+
+
+@pytest.mark.parametrize("resolution", [0.0, -1.0, 0.3, np.nan])
+def test_cells_that_lose_walls_are_refused(resolution):
+    with pytest.raises(pf.ParameterError):
+        worlds.office(resolution)
