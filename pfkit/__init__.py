@@ -29,6 +29,9 @@ from pfkit.particles import (
 )
 from pfkit.log import Log, Step
 from pfkit.maps import LandmarkMap
+from pfkit.occupancy import OccupancyGrid
+from pfkit.distance import distance_field
+from pfkit.raycast import RayCaster
 from pfkit.resampling import (
     SCHEMES,
     multinomial,
@@ -66,10 +69,15 @@ from pfkit.landmark_sensors import Bearing, Range, RangeBearing
 from pfkit.association import MaximumLikelihood
 from pfkit.intermittent import Intermittent
 from pfkit.robust import Gate, OutlierMixture, Tempered
-from pfkit.estimators import covariance, mean_pose
+from pfkit.estimators import covariance, map_particle, mean_pose, top_share_mean
+from pfkit.kde import kde, kde_mode, silverman_bandwidth
+from pfkit.modes import Clusters, clusters
 
 # L3: filters
 from pfkit.filters import History, Info, predict, resample, run, select, step, update
+from pfkit.recovery import Memory, augmented_step, inject, poses_seeing
+from pfkit.kld import kld_bound, kld_count, kld_step
+from pfkit.roughening import regularise, roughen
 from pfkit.histogram import door_likelihood, predict_1d, shift_kernel, update_1d
 from pfkit.posegrid import PoseGrid, gaussian_grid, uniform_grid
 from pfkit.gridfilter import predict_by_convolution, predict_by_transport, run_grid, update_grid
