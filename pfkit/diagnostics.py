@@ -48,19 +48,20 @@ def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
     ----------
     estimate : array_like (D, ...), metres and radians, e.g. (3, T) or (3, T, B)
     truth : array_like (D, ...), with the same leading axes; one truth (3, T) serves a batch
+        NaN where it is not known, as in the gaps of a real log.
 
     Returns
     -------
-    array (D, ...), of the estimate's shape
+    array (D, ...), of the estimate's shape; NaN where the truth is not known
 
     Raises
     ------
     ShapeError, DataError
-        If the shapes do not belong together, or a number is not finite: score only the steps
-        whose truth is known.
+        If the shapes do not belong together, the estimate is not finite or the truth infinite.
     """
     estimate = require_finite("estimate", estimate, DataError)
-    truth = require_finite("truth", truth, DataError)
+    truth = np.asarray(truth, dtype=float)
+    require_finite("truth", truth[~np.isnan(truth)], DataError)
     if estimate.ndim == 0 or estimate.shape[0] < 2:
         raise ShapeError(
             f"estimate must have its components first, shape (D, ...), got {estimate.shape}"
@@ -71,7 +72,8 @@ def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
         raise ShapeError(f"truth {truth.shape} does not match the estimate {estimate.shape}")
     error = estimate - truth.reshape(truth.shape + (1,) * (estimate.ndim - truth.ndim))
     if error.shape[0] >= 3:
-        error[2] = wrap(error[2])
+        known = ~np.isnan(error[2])
+        error[2, known] = wrap(error[2, known])
     return error
 
 
@@ -86,13 +88,13 @@ def position_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
 
     Returns
     -------
-    array (...), metres
+    array (...), metres; NaN where the truth is not known
     """
     return np.hypot(*pose_error(estimate, truth)[:2])
 
 
 def rmse(estimate: ArrayLike, truth: ArrayLike) -> Array | np.float64:
-    r"""Root mean square of the position error over the steps of a drive.
+    r"""Root mean square of the position error over the steps whose truth is known.
 
     .. math:: \sqrt{\tfrac1T \sum_t (\hat x_t - x_t)^2 + (\hat y_t - y_t)^2}
 
@@ -107,13 +109,13 @@ def rmse(estimate: ArrayLike, truth: ArrayLike) -> Array | np.float64:
     Raises
     ------
     ShapeError, DataError
-        If the shapes do not match, there is no step, or a number is not finite.
+        As `pose_error`; also if there is no step with a known truth.
     """
     return _root_mean_square(position_error(estimate, truth))
 
 
 def heading_rmse(estimate: ArrayLike, truth: ArrayLike) -> Array | np.float64:
-    r"""Root mean square of the wrapped heading error over the steps of a drive.
+    r"""Root mean square of the wrapped heading error over the steps whose truth is known.
 
     .. math:: \sqrt{\tfrac1T \sum_t \mathrm{wrap}(\hat\theta_t - \theta_t)^2}
 
@@ -136,7 +138,11 @@ def heading_rmse(estimate: ArrayLike, truth: ArrayLike) -> Array | np.float64:
 def _root_mean_square(error: Array) -> Array | np.float64:
     if error.ndim == 0 or error.shape[0] == 0:
         raise ShapeError(f"need (D, T) with at least one step T, got errors of {error.shape}")
-    return np.sqrt(np.mean(error * error, axis=0))
+    known = ~np.isnan(error)
+    steps = known.sum(axis=0)
+    if not np.all(steps):
+        raise DataError("the truth is NaN at every step of a run: there is nothing to score")
+    return np.sqrt(np.sum(np.where(known, error, 0.0) ** 2, axis=0) / steps)
 
 
 def settle_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.float64:

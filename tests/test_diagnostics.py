@@ -68,11 +68,24 @@ def test_heading_rmse_of_a_whole_turn_is_zero():
         (np.zeros(3), np.zeros(3), pf.ShapeError),
         (np.zeros((1, 5)), np.zeros((1, 5)), pf.ShapeError),
         (np.full((3, 5), np.nan), np.zeros((3, 5)), pf.DataError),
+        (np.zeros((3, 5)), np.full((3, 5), np.nan), pf.DataError),
+        (np.zeros((3, 5)), np.full((3, 5), np.inf), pf.DataError),
     ],
 )
 def test_bad_errors_are_named(estimate, truth, error):
     with pytest.raises(error):
         pf.rmse(estimate, truth)
+
+
+def test_steps_without_a_truth_are_not_scored():
+    estimate, truth = rng().normal(size=(3, 20, 2)), rng(1).normal(size=(3, 20))
+    truth[:, 5:9] = np.nan
+    keep = np.r_[:5, 9:20]
+    np.testing.assert_allclose(pf.rmse(estimate, truth), pf.rmse(estimate[:, keep], truth[:, keep]))
+    np.testing.assert_allclose(
+        pf.heading_rmse(estimate, truth), pf.heading_rmse(estimate[:, keep], truth[:, keep])
+    )
+    assert np.isnan(pf.position_error(estimate, truth)[5:9]).all()
 
 
 def test_settle_time_is_the_start_of_the_good_ending():
