@@ -65,19 +65,19 @@ def _read(w: ArrayLike, rng: np.random.Generator, n: int | None) -> tuple[Array,
     return w, edges, w.shape[-1] if n is None else require_count("n", n)
 
 
-def _comb(edges: Array, n: int, offset: Array) -> Indices:
-    """Ancestors for a comb with one tooth in each unit cell k of a ruler of length n.
+def _comb(edges: Array, n: int, u: Array) -> Indices:
+    """Ancestors for a comb with one tooth in each unit cell of a ruler of length n, at k + u.
 
-    Nothing is searched. Tooth k stands at k + 1 - offset, so an edge at e has
-    floor(e + offset) teeth at or below it. Reading those counts backwards, tooth k belongs to
-    the first particle with more than k teeth at or below its edge.
+    Nothing is searched. An edge at e has floor(e + 1 - u) teeth at or below it. Reading those
+    counts backwards, tooth k belongs to the first particle with more than k teeth at or below
+    its edge. The 1 is one bit short, so that no tooth stands on the edge 0 of a particle that
+    has no weight.
     """
     # a hair above n / total, so that rounding cannot leave the last tooth beyond the last edge
     edges *= np.nextafter(n / edges[..., -1:], np.inf)
-    if offset.shape[-1] > 1:
-        cell = np.minimum(edges.astype(np.int64), n - 1)
-        offset = np.take_along_axis(offset, cell, axis=-1)
-    edges += offset
+    if u.shape[-1] > 1:
+        u = np.take_along_axis(u, np.minimum(edges.astype(np.int64), n - 1), axis=-1)
+    edges += np.nextafter(1.0, 0.0) - u
     below = edges.astype(np.int64)
     if below.ndim == 1:
         counts = np.bincount(below, minlength=n)[:n]
