@@ -108,6 +108,11 @@ def problems(notebook, name, items):
         lines = [line for line in text(cell).splitlines() if line.strip()]
         if len(lines) > 12 and not is_lab_cell(cell):
             found.append(f"cell {cell['id']} has {len(lines)} lines, norm 12")
+        found += [
+            f"cell {cell['id']} has a line longer than 88 characters: it would need scrolling"
+            for line in lines
+            if len(line) > 88
+        ]
         alt = cell["metadata"].get("mystnb", {}).get("image", {}).get("alt", "")
         if has_figure(cell) and len(alt) < 30:
             found.append(f"figure in cell {cell['id']} needs alt text that says what it shows")
