@@ -70,7 +70,7 @@ from pfkit.association import MaximumLikelihood
 from pfkit.intermittent import Intermittent
 from pfkit.robust import Gate, OutlierMixture, Tempered
 from pfkit.estimators import covariance, map_particle, mean_pose, top_share_mean
-from pfkit.kde import kde, kde_mode, silverman_bandwidth
+from pfkit.density import kde, kde_mode, silverman_bandwidth
 from pfkit.modes import Clusters, clusters
 
 # L3: filters
@@ -92,6 +92,7 @@ from pfkit.oracle import (
 from pfkit.kalman import Gaussian, kalman_predict, kalman_update
 from pfkit.gaussian import gaussian_predict, gaussian_update, linearise, unscented
 from pfkit.smoother import GaussianHistory, rts_smooth, run_gaussian
+from pfkit.tempering import tempered_update
 
 # L4: simulation, data, judgement
 from pfkit import worlds
@@ -117,7 +118,11 @@ from pfkit.table import summarise, tabulate
 from pfkit.consistency import coverage, credibility, nees, nees_band
 from pfkit.symmetry import hypothesis_mass, images, symmetries
 from pfkit.faults import Outliers, Sight
+from pfkit.odometry import ComposedMotion, Drift, Odometer, compose_odometry, fill_in
+from pfkit.calibration import Calibration, calibrate
+from pfkit.datasets import load_log, load_mrclam, load_plaza
 from pfkit.routes import PurePursuit, commands, odometry_along
+from pfkit.logfile import read_log, save_log
 from pfkit.simulate import drive, sense, simulate_log
 
 # L5: studies

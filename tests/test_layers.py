@@ -28,7 +28,7 @@ LAYERS: dict[str, list[str]] = {
         *["association", "beams", "likelihood_field", "robust", "faults", "intermittent"],
     ],
     "L3": [
-        *["estimators", "kde", "modes"],
+        *["estimators", "density", "modes"],
         "filters",
         *["recovery", "kld", "roughening"],
         *["kalman", "gaussian", "smoother"],
@@ -37,7 +37,7 @@ LAYERS: dict[str, list[str]] = {
         "tempering",
     ],
     "L4": [
-        *["odometry", "routes", "simulate", "datasets", "comparison", "table"],
+        *["odometry", "routes", "simulate", "datasets", "logfile", "comparison", "table"],
         *["diagnostics", "observability", "calibration", "consistency", "divergence"],
         *["symmetry", "localise"],
     ],
