@@ -1,0 +1,163 @@
+"""``python -m pfkit localise FOLDER``: localise a recorded robot from the command line."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import Any, NoReturn
+
+import numpy as np
+
+from pfkit.datasets import load_log
+from pfkit.errors import ParameterError, PfkitError
+from pfkit.localise import Score, Track, calibrate_first, localise, reckon, score, settings_for
+from pfkit.log import Log
+
+
+class OneLineParser(argparse.ArgumentParser):
+    """Argument errors in one line, exit code 2."""
+
+    def error(self, message: str) -> NoReturn:
+        print(f"{self.prog}: {message}", file=sys.stderr)
+        raise SystemExit(2)
+
+
+def parser() -> argparse.ArgumentParser:
+    """The command's arguments."""
+    top = OneLineParser(prog="python -m pfkit", description="Particle filters for robots.")
+    commands = top.add_subparsers(dest="command", required=True)
+    say = commands.add_parser(
+        "localise",
+        help="localise a recorded robot and score the answer",
+        description="Localise a recorded robot: an MRCLAM folder (either naming) or Plaza.",
+    )
+    say.add_argument("folder", help="the log's folder, or its name in PFKIT_DATA or data/")
+    say.add_argument("--start", choices=("known", "global"), default="known")
+    say.add_argument("--particles", type=int, metavar="N", help="default: by kind of log and start")
+    say.add_argument("--seed", type=int, default=0, metavar="S")
+    say.add_argument(
+        "--calibrate",
+        type=float,
+        metavar="SECONDS",
+        help="fit odometry and sensor bias to the truth of the first SECONDS; "
+        "default: a third of a range-only log, whose biases hide the robot, else 0 (off)",
+    )
+    say.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="default: here")
+    say.add_argument("--robot", type=int, metavar="N", help="which, if the folder holds several")
+    say.add_argument("--drop-unknown", action="store_true", help="drop unlisted bar codes")
+    return top
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run the command; returns the exit code: 0, or 2 after one line about bad input."""
+    args = parser().parse_args(argv)
+    try:
+        run(args)
+    except (PfkitError, OSError) as error:
+        print(f"pfkit: {' '.join(str(error).split())}", file=sys.stderr)
+        return 2
+    return 0
+
+
+def run(args: argparse.Namespace) -> None:
+    """Load, calibrate, filter, score, write."""
+    if args.seed < 0:
+        raise ParameterError(f"--seed must be >= 0, got {args.seed}")
+    log = load_log(args.folder, args.robot, args.drop_unknown)
+    print(log)
+    seconds = args.calibrate
+    if seconds is None:
+        seconds = (log.t[-1] - log.t[0]) / 3 if settings_for(log).sensor.components == 2 else 0.0
+    calibration = calibrate_first(log, seconds) if seconds != 0 else None
+    if calibration is not None:
+        print(f"calibrated on the first {seconds:.0f} s: {calibration}")
+    settings = settings_for(log, calibration)
+    corrected = log if calibration is None else calibration.apply(log)
+    rng = np.random.default_rng(args.seed)
+    track = localise(
+        corrected, rng, args.start, args.particles, settings=settings, watch=_progress()
+    )
+    _report(log, track, args.start, settings.limit)
+    args.out.mkdir(parents=True, exist_ok=True)
+    write_track(args.out / "track.csv", log, track)
+    print(f"wrote {args.out / 'track.csv'}")
+    _draw(args.out / "track.png", log, track.estimate[..., 0])
+
+
+def _progress() -> Callable[[int, int], None]:
+    """A line on standard error: a moving one in a terminal, every quarter elsewhere."""
+    live, shown = sys.stderr.isatty(), -1
+
+    def watch(k: int, n: int) -> None:
+        nonlocal shown
+        part = 100 * k // n if live else 25 * (4 * k // n)
+        if part != shown:
+            shown = part
+            end = "\n" if part == 100 or not live else "\r"
+            print(f"filtering {part:3d} %", end=end, file=sys.stderr, flush=True)
+
+    return watch
+
+
+def _report(log: Log, track: Track, start: str, limit: float) -> None:
+    """Print the table."""
+    since = track.first if start == "global" else -np.inf
+    print(f"{'':16}{'RMSE [m]':>10}{'median':>9}{'95 %':>9}{'heading RMSE [deg]':>20}")
+    if log.start is not None:
+        _row("dead reckoning", score(log, reckon(log), limit, since))
+    own = score(log, track.estimate[..., 0], limit, since)
+    _row("filter", own)
+    if start == "global":
+        print(f"errors from the first measurement on, at {track.first:.1f} s")
+    when = f"{own.converged:.1f} s" if np.isfinite(own.converged) else "never"
+    print(f"error below {limit:g} m for good from: {when}")
+    print(f"{len(log) / track.seconds:,.0f} steps/s ({len(log):,} steps in {track.seconds:.2f} s)")
+
+
+def _row(name: str, s: Score) -> None:
+    degrees = np.degrees(s.heading_rmse)
+    print(f"{name:16}{s.rmse:10.3f}{s.median:9.3f}{s.p95:9.3f}{degrees:20.2f}")
+
+
+def write_track(path: Path, log: Log, track: Track) -> None:
+    """Write t, x, y, theta, sd at every odometry stamp (seconds since the start, m, rad, m)."""
+    kept = slice(None) if log.scored is None else log.scored
+    table = np.vstack((log.t, track.estimate[..., 0], track.sd[:, 0]))[:, kept]
+    np.savetxt(path, table.T, "%.4f", ",", header="t,x,y,theta,sd", comments="", encoding="ascii")
+
+
+def draw_track(ax: Any, log: Log, estimate: Any) -> None:
+    """Draw landmarks, truth, dead reckoning and the filter's track into matplotlib axes."""
+    from pfkit.plotting import draw_path, draw_world
+
+    draw_world(ax, log.world)
+    if log.truth is not None:
+        draw_path(ax, log.truth, "truth")
+        window = ax.axis()
+        if log.start is not None:
+            draw_path(ax, reckon(log), "dead reckoning", lw=0.8)
+        ax.axis(window)  # dead reckoning may leave the picture: that is its message
+    draw_path(ax, estimate, "estimate", lw=1.0, label="filter")
+    ax.set(xlabel="x [m]", ylabel="y [m]", title=log.source, aspect="equal")
+    ax.legend(loc="upper right", frameon=True)
+
+
+def _draw(path: Path, log: Log, estimate: Any) -> None:
+    try:
+        import matplotlib
+    except ImportError:
+        print(f"{path.name} was not drawn: pip install 'pfkit[plotting]'", file=sys.stderr)
+        return
+    matplotlib.use("Agg")
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(6, 6), dpi=100, layout="constrained")
+    draw_track(figure.subplots(), log, estimate)
+    figure.savefig(path)
+    print(f"wrote {path}")
+
+
+if __name__ == "__main__":
+    raise SystemExit(main())
