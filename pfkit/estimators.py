@@ -3,7 +3,11 @@
 A filter's output is the cloud. Whoever asks "where is the robot?" wants one pose, and which
 one depends on what an error costs. The weighted mean has the smallest expected squared
 error. For a cloud in two halves it lies between them, perhaps inside a wall: then the mode
-of the heavier half is the better answer, and "two hypotheses" the honest one.
+of the heavier half is the better answer, and "two hypotheses" the honest one. `kde_mode` finds
+the densest place; `clusters`, in `modes`, names all hypotheses with their masses.
+
+The two estimators below that look at single weights, `map_particle` and `top_share_mean`, ask
+before resampling: afterwards all weights are equal and they have nothing to go by.
 
 Headings are averaged on the circle.
 """
@@ -13,8 +17,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
+from pfkit.errors import ParameterError, require_fraction
 from pfkit.geometry import circular_mean, wrap
-from pfkit.particles import Particles, require_particles
+from pfkit.particles import Particles, normalise, require_particles
 
 
 def mean_pose(bel: Particles) -> NDArray[np.float64]:
@@ -65,3 +70,58 @@ def covariance(bel: Particles) -> NDArray[np.float64]:
     if bel.state.shape[0] >= 3:
         deviation[2] = wrap(deviation[2])
     return np.einsum("i...m,j...m,...m->ij...", deviation, deviation, bel.w)
+
+
+def map_particle(bel: Particles) -> NDArray[np.float64]:
+    r"""The particle of the largest weight.
+
+    .. math:: x^{[m^*]}, \qquad m^* = \arg\max_m w_m
+
+    The largest weight is not the largest density: a weight says how much better a particle
+    explains the data than its proposal did. It comes near the maximum a posteriori only while
+    particles lie evenly; `kde_mode` does not depend on that.
+
+    Parameters
+    ----------
+    bel : Particles with state (D, M) or (D, B, M), weighted
+
+    Returns
+    -------
+    array (D,) or (D, B). Of equal weights the first wins.
+
+    Raises
+    ------
+    ParameterError
+        If `bel` is not a particle set.
+    """
+    best = require_particles(bel).log_w.argmax(axis=-1)
+    return np.take_along_axis(bel.state, best[None, ..., None], axis=-1)[..., 0]
+
+
+def top_share_mean(bel: Particles, share: float = 0.1) -> NDArray[np.float64]:
+    r"""Mean pose of the heaviest particles.
+
+    .. math:: \bar x = \frac{\sum_{m \in T} w_m x_m}{\sum_{m \in T} w_m}, \qquad
+              |T| = \lceil \text{share} \cdot M \rceil
+
+    Parameters
+    ----------
+    bel : Particles with state (D, M) or (D, B, M), weighted
+    share : float in (0, 1]
+        1 is `mean_pose`; towards 0 it becomes `map_particle`.
+
+    Returns
+    -------
+    array (D,) or (D, B)
+
+    Raises
+    ------
+    ParameterError
+        If the share is not in (0, 1].
+    """
+    if require_fraction("share", share) == 0:
+        raise ParameterError("share must be > 0, got 0; the mean of no particles does not exist")
+    n = int(np.ceil(share * require_particles(bel).M))
+    top = np.argsort(-bel.log_w, axis=-1, kind="stable")[..., :n]
+    state = np.take_along_axis(bel.state, top[None], axis=-1)
+    return mean_pose(Particles(state, normalise(np.take_along_axis(bel.log_w, top, axis=-1))[0]))
