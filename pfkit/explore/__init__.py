@@ -20,8 +20,11 @@ from pfkit.explore.scene import Control, Mission, Panel, Scene
 __all__ = ["SCENES", "Control", "Mission", "Panel", "Scene", "scene"]
 
 SCENES = {
+    "banana": ("pfkit.explore.banana", "Banana"),
     "comb": ("pfkit.explore.comb", "Comb"),
+    "corridor": ("pfkit.explore.corridor", "Corridor"),
     "drive": ("pfkit.explore.drive", "Drive"),
+    "proposal": ("pfkit.explore.proposal", "Proposal"),
 }
 
 

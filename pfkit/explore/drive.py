@@ -60,7 +60,7 @@ class Drive(Scene):
         v = self.values
         self.layout = "square" if v["world"] == "square" else "arena"
         world = pf.worlds.square() if self.layout == "square" else pf.worlds.arena()
-        self.landmarks = world.positions.copy()
+        self.landmarks = world.positions[:, : 2 if v["world"] == "pair" else None].copy()
         self.bounds = world.bounds
         if self.layout == "square":
             self.bounds = (0.0, 15.0, 0.0, 15.0)
@@ -179,7 +179,7 @@ class Drive(Scene):
 
     def _inject(self, share: float) -> None:
         """Replace a share of the equally weighted set by poses drawn anywhere."""
-        n = int(round(share * self.bel.M))
+        n = round(share * self.bel.M)
         if n:
             self.bel.state[:, self.rng.permutation(self.bel.M)[:n]] = self.world.sample_poses(
                 n, self.rng

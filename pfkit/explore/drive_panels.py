@@ -225,8 +225,12 @@ CONTROLS = (
     ),
     Control("point", "Pointer", "point"),
     # Fixed by the panel; no reader sees them.
-    Control("world", "World", "choice", "arena", choices=(("arena", ""), ("square", ""))),
-    Control("show", "Show", "choice", "cloud", choices=(("cloud", ""), ("copies", ""), ("map", ""))),
+    Control(
+        "world", "World", "choice", "arena", choices=(("arena", ""), ("pair", ""), ("square", ""))
+    ),
+    Control(
+        "show", "Show", "choice", "cloud", choices=(("cloud", ""), ("copies", ""), ("map", ""))
+    ),
     Control("moves", "Moves", "toggle", True),
 )
 HANDS = ("autopilot", "hand", "throttle", "steer", "point")
@@ -268,8 +272,9 @@ PANELS = {
     ),
     "sensing": Panel(
         "What one look says about the position",
-        (*SENSOR, "hand", "next", "add", "remove", "throttle", "steer", "point"),
-        values={"show": "map", "moves": True, "autopilot": False, "hand": "landmark", "sight": 12.0},
+        (*SENSOR, "next", "add", "remove", *HANDS),
+        values={"show": "map", "world": "pair", "sense": "range", "hand": "landmark",
+                "autopilot": True, "sight": 12.0, "sigma_r": 0.4},
         missions=(
             Mission(
                 "Choose range only and remove landmarks until one is left. What shape is the "
@@ -286,7 +291,7 @@ PANELS = {
             Mission(
                 "Double the range noise. By what factor does the likely area grow with one "
                 "landmark, and with four?",
-                lambda s: s.values["sigma_r"] >= 0.6,
+                lambda s: s.values["sigma_r"] >= 0.8 and s.landmarks.shape[1] >= 4,
             ),
         ),
         alt="The likelihood of one look over all positions of the arena, as shading, with the "
@@ -346,6 +351,7 @@ PANELS = {
         ("M", "scheme", "threshold", "noise", "trust", "sigma_r", "fifth", "names", *HANDS),
         values={"world": "square", "show": "copies", "names": False, "sight": 22.0, "M": 1000,
                 "sigma_r": 0.5, "threshold": 0.7},
+        record=(420, 14),
         missions=(
             Mission(
                 "Wait until fewer than four hypotheses are alive. Nothing the robot saw told them "

@@ -127,6 +127,7 @@ class Panel:
     values: Mapping[str, Any] = field(default_factory=dict)
     missions: tuple[Mission, ...] = ()
     alt: str = ""
+    record: tuple[int, int] | None = None  # ticks, and ticks per frame, of its recorded run
 
 
 class Scene:
@@ -142,8 +143,8 @@ class Scene:
     all_controls: ClassVar[tuple[Control, ...]]
     panels: ClassVar[dict[str, Panel]]
     units: ClassVar[dict[str, str]] = {}  # readout name -> unit, in display order
-    record_steps: ClassVar[int] = 240  # length of the recorded run, in ticks
-    record_every: ClassVar[int] = 3  # ticks between two of its frames
+    record_steps: int = 240  # length of the recorded run, in ticks
+    record_every: int = 3  # ticks between two of its frames
     still_at: ClassVar[int] = 0  # tick that the still shows; 0: the end of the recorded run
 
     def __init__(self, panel: str | None = None, seed: int = 1):
@@ -153,6 +154,8 @@ class Scene:
                 f"{self.name} has no panel {panel!r}; choose one of {sorted(self.panels)}"
             )
         self.panel_name, self.panel = panel, self.panels[panel]
+        if self.panel.record:
+            self.record_steps, self.record_every = self.panel.record
         self.by_name = {c.name: c for c in self.all_controls}
         self.values: dict[str, Any] = {
             c.name: c.default for c in self.all_controls if c.kind not in ("button", "point")

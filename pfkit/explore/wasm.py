@@ -1,8 +1,9 @@
 """What is different about NumPy in the page, and made the same.
 
-WebAssembly is a 32-bit machine: NumPy counts and indexes with 32-bit integers there, and its two
-counting functions refuse the 64-bit indices that pfkit's resamplers return and that work on every
-desktop. `accept_int64` makes them take both, so that the same code runs in the page.
+WebAssembly is a 32-bit machine: NumPy counts and indexes with 32-bit integers there, and some of
+its functions refuse the 64-bit indices that pfkit's resamplers return and that work on every
+desktop. `accept_int64` makes them take both, so that the same code runs in the page. The *methods*
+``array.take`` and ``array.repeat`` cannot be taught: write ``np.take(array, ...)``.
 """
 
 from __future__ import annotations
@@ -13,10 +14,10 @@ import numpy as np
 
 
 def accept_int64() -> None:
-    """On a 32-bit NumPy let `np.bincount` and `np.repeat` take int64; elsewhere do nothing."""
+    """On a 32-bit NumPy let `bincount`, `repeat` and `take` accept int64; elsewhere do nothing."""
     if np.dtype(np.intp).itemsize >= 8 or getattr(np.bincount, "takes_int64", False):
         return
-    bincount, repeat = np.bincount, np.repeat
+    bincount, repeat, take = np.bincount, np.repeat, np.take
 
     @functools.wraps(bincount)
     def bincount_any(x, /, weights=None, minlength=0):
@@ -26,8 +27,12 @@ def accept_int64() -> None:
     def repeat_any(a, repeats, axis=None):
         return repeat(a, _narrow(repeats), axis)
 
+    @functools.wraps(take)
+    def take_any(a, indices, axis=None, out=None, mode="raise"):
+        return take(a, _narrow(indices), axis, out, mode)
+
     bincount_any.takes_int64 = True  # type: ignore[attr-defined]
-    np.bincount, np.repeat = bincount_any, repeat_any
+    np.bincount, np.repeat, np.take = bincount_any, repeat_any, take_any
 
 
 def _narrow(values):

@@ -108,7 +108,7 @@
         this.status);
       this.missions = this.buildMissions();
       r.replaceChildren(head, el("div", { class: "pf-stage" }, this.canvas, this.problem, this.bar),
-        this.transport, this.timing, this.readouts, this.controls, this.missions, keys);
+        this.transport, this.timing, this.readouts, this.missions, this.controls, keys);
       this.say(this.mode === "recorded"
         ? "Recorded run. Touch any control and Python continues from here." : "Ready to start.");
       this.setPlaying(this.playing);

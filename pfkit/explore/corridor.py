@@ -1,0 +1,216 @@
+"""The corridor: the Bayes filter on 24 cells, with a door detector that can be wrong.
+
+Chapter 1 as a machine. The corridor is a ring. Each *move* takes the robot one cell on, most of the
+time; each *look* reports door or wall, most of the time rightly. Three rows of bars show the two
+lines of the filter: the prediction, the likelihood of what was seen, and their normalised product.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+import pfkit as pf
+from pfkit.explore.pen import Pen
+from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
+
+CELLS = 24
+DOORS = {"three": (3, 6, 15), "even": (2, 8, 14, 20), "one": (9,), "none": ()}
+
+
+class Corridor(Scene):
+    name = "corridor"
+    size = (720, 440)
+    rate = 2.0
+    record_steps = 48
+    record_every = 1
+    still_at = 13
+    units: ClassVar[dict[str, str]] = {
+        "belief there": "%",
+        "entropy": "bit",
+        "evidence": "p(z)",
+    }
+    all_controls = (
+        Control(
+            "hit",
+            "Hit rate",
+            "range",
+            0.8,
+            lo=0.01,
+            hi=0.99,
+            step=0.01,
+            help="How often a door that is there is seen.",
+        ),
+        Control(
+            "false",
+            "False alarm rate",
+            "range",
+            0.1,
+            lo=0.01,
+            hi=0.99,
+            step=0.01,
+            help="How often a door is seen where there is wall.",
+        ),
+        Control(
+            "slip",
+            "Falls short",
+            "range",
+            0.1,
+            lo=0,
+            hi=0.5,
+            step=0.05,
+            help="How often a move ends one cell too early.",
+        ),
+        Control(
+            "skid",
+            "Goes too far",
+            "range",
+            0.1,
+            lo=0,
+            hi=0.5,
+            step=0.05,
+            help="How often a move ends one cell too late.",
+        ),
+        Control(
+            "doors",
+            "Doors",
+            "choice",
+            "three",
+            choices=(
+                ("three", "three"),
+                ("even", "four, evenly"),
+                ("one", "one"),
+                ("none", "none"),
+            ),
+            help="Where they are; the robot has this map.",
+            live=False,
+        ),
+        Control("auto", "By itself", "toggle", True, help="Move and look in turn."),
+        Control("move", "Move", "button", help="Predict: one cell on.", keys={"m": True}),
+        Control("look", "Look", "button", help="Correct: door or wall?", keys={"l": True}),
+        Control("carry", "Carry it elsewhere", "button", help="The filter is not told."),
+    )
+    panels: ClassVar[dict[str, Panel]] = {
+        "corridor": Panel(
+            "Where in the corridor?",
+            tuple(c.name for c in all_controls),
+            missions=(
+                Mission(
+                    "Switch off “by itself” and restart. Look once. How many peaks has the belief, "
+                    "and why are they equally high?",
+                    lambda s: not s.values["auto"] and s.looks == 1 and s.moves == 0,
+                ),
+                Mission(
+                    "Make the hit rate equal to the false alarm rate and look ten times. What does "
+                    "the filter learn?",
+                    lambda s: (
+                        s.looks >= 10
+                        and abs(s.values["hit"] - s.values["false"]) < 0.005
+                        and s.information < 0.01
+                    ),
+                ),
+                Mission(
+                    "When the filter is sure, move fifteen times without looking. What happens to "
+                    "the entropy, and where does it stop?",
+                    lambda s: s.since_look >= 15,
+                ),
+            ),
+            alt="A ring corridor of 24 cells with doors and a robot. Three rows of bars: the "
+            "predicted belief, the likelihood of the last reading, and the corrected belief.",
+        )
+    }
+
+    def start(self) -> None:
+        self.is_door = np.zeros(CELLS, bool)
+        self.is_door[list(DOORS[self.values["doors"]])] = True
+        self.robot = int(self.rng.integers(CELLS))
+        self.bel = np.full(CELLS, 1 / CELLS)
+        self.predicted, self.likelihood = self.bel, np.ones(CELLS)
+        self.saw: bool | None = None
+        self.evidence = 1.0
+        self.looks = self.moves = self.since_look = 0
+        self.information = 0.0
+        self.phase = "start"
+
+    def advance(self) -> None:
+        if self.values["auto"]:
+            self._look() if self.phase == "move" else self._move()
+
+    def changed(self, name: str, value: Any) -> None:
+        if name == "move":
+            self._move()
+        elif name == "look":
+            self._look()
+        elif name == "carry":
+            self.robot = int(self.rng.integers(CELLS))
+        elif name in ("slip", "skid") and self.values["slip"] + self.values["skid"] > 0.95:
+            self.values["skid" if name == "slip" else "slip"] = 0.95 - self.values[name]
+
+    def _move(self) -> None:
+        kernel = pf.shift_kernel(1, self.values["slip"], self.values["skid"])
+        reach = kernel.size // 2
+        self.robot = (self.robot + int(self.rng.choice(kernel.size, p=kernel)) - reach) % CELLS
+        self.bel = self.predicted = pf.predict_1d(self.bel, kernel, ring=True)
+        self.moves += 1
+        self.since_look += 1
+        self.phase = "move"
+
+    def _look(self) -> None:
+        hit, false = self.values["hit"], self.values["false"]
+        self.saw = bool(self.rng.random() < (hit if self.is_door[self.robot] else false))
+        self.predicted = self.bel
+        self.likelihood = pf.door_likelihood(self.is_door, self.saw, hit, false)
+        before = self._entropy()
+        self.bel, evidence = pf.update_1d(self.bel, self.likelihood)
+        self.evidence = float(evidence)
+        self.information = before - self._entropy()
+        self.looks += 1
+        self.since_look = 0
+        self.phase = "look"
+
+    def _entropy(self) -> float:
+        p = self.bel[self.bel > 0]
+        return float(-(p * np.log2(p)).sum())
+
+    def readouts(self) -> Readouts:
+        best = int(self.bel.argmax())
+        return {
+            "robot in": f"cell {self.robot}",
+            "most likely": f"cell {best}",
+            "belief there": float(100 * self.bel[self.robot]),
+            "entropy": self._entropy(),
+            "saw": "nothing yet" if self.saw is None else "door" if self.saw else "wall",
+            "evidence": self.evidence,
+        }
+
+    def draw(self, pen: Pen) -> None:
+        cells = np.arange(CELLS)
+        x = (-0.5, CELLS - 0.5)
+        pen.view((0.02, 0.76, 0.96, 0.22), x, (0, 1), frame=False)
+        pen.bars("grid", cells - 0.5, cells + 0.5, 0.15, 0.8, alpha=0.8)
+        doors = cells[self.is_door]
+        if doors.size:
+            pen.bars("paper", doors - 0.42, doors + 0.42, 0.15, 0.8)
+            pen.bars("landmark", doors - 0.36, doors + 0.36, 0.15, 0.72, alpha=0.85)
+            pen.symbols("paper", "circle", doors + 0.18, np.full(doors.shape, 0.42), size=5)
+        pen.segments("wall", -0.5, 0.15, CELLS - 0.5, 0.15, width=2)
+        pen.robots("truth", self.robot, 0.3, 0.0, radius=0.42)
+        if self.saw is not None and self.phase == "look":
+            word = "door!" if self.saw else "wall"
+            pen.text("ink", self.robot, 0.93, word, size=13, anchor=0)
+        rows = (
+            ("belief before the look", self.predicted, "muted", self.phase == "move"),
+            ("p(z | cell)", self.likelihood, "proposal", self.phase == "look"),
+            ("belief now", self.bel, "particle", True),
+        )
+        for row, (label, values, style, fresh) in enumerate(rows):
+            top = 1.0 if row == 1 else max(0.12, float(np.max(values)) * 1.1)
+            pen.view((0.02, 0.515 - row * 0.245, 0.96, 0.17), x, (0, top), frame=False)
+            pen.bars(style, cells - 0.42, cells + 0.42, 0, values, alpha=0.95 if fresh else 0.45)
+            pen.segments("grid", -0.5, 0, CELLS - 0.5, 0, width=1)
+            pen.text("ink", -0.45, top * 1.13, label, size=12)
+            if row != 1:
+                pen.segments(
+                    "truth", self.robot, 0, self.robot, float(values[self.robot]), width=2.5
+                )

@@ -1,0 +1,200 @@
+"""Target and proposal: importance sampling under the reader's hands.
+
+Chapter 5 as a machine. We want expectations under the *target* but can only draw from the
+*proposal*. Each tick draws a fresh sample, weighs it by target over proposal, and estimates the
+mean of the target. The lower strip shows the weights as stems, the right one the estimates of many
+ticks: where the two densities disagree, a few particles carry everything and the estimates scatter.
+"""
+
+from __future__ import annotations
+
+from typing import Any, ClassVar
+
+import numpy as np
+
+import pfkit as pf
+from pfkit.explore.pen import Pen
+from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
+
+X = np.linspace(-8, 8, 801)
+TARGETS = {  # weights, means, standard deviations of normal components
+    "one": ((1.0,), (0.0,), (1.0,)),
+    "two": ((0.6, 0.4), (-2.0, 2.5), (0.6, 0.8)),
+    "narrow": ((1.0,), (1.0,), (0.25,)),
+}
+
+
+def normal(x: np.ndarray, mu: float, sigma: float) -> np.ndarray:
+    """Density of N(mu, sigma^2)."""
+    return np.exp(-0.5 * ((x - mu) / sigma) ** 2) / (sigma * np.sqrt(2 * np.pi))
+
+
+def student(x: np.ndarray, mu: float, sigma: float) -> np.ndarray:
+    """Density of a Student t with three degrees of freedom: tails that never give up."""
+    return 2 / (np.pi * np.sqrt(3) * sigma) / (1 + ((x - mu) / sigma) ** 2 / 3) ** 2
+
+
+class Proposal(Scene):
+    name = "proposal"
+    size = (720, 430)
+    rate = 3.0
+    record_steps = 60
+    record_every = 1
+    still_at = 40
+    units: ClassVar[dict[str, str]] = {
+        "largest weight": "%",
+        "scatter": "sd of 100 estimates",
+    }
+    all_controls = (
+        Control(
+            "target",
+            "Target",
+            "choice",
+            "two",
+            choices=(("one", "one bump"), ("two", "two bumps"), ("narrow", "a needle")),
+            help="The density whose mean we want.",
+        ),
+        Control(
+            "tails",
+            "Proposal",
+            "choice",
+            "normal",
+            choices=(("normal", "normal"), ("student", "heavy tails")),
+            help="The density that we can draw from.",
+        ),
+        Control("mu", "Its centre", "range", 0.0, lo=-5, hi=5, step=0.1, help="Or drag the curve."),
+        Control("sigma", "Its width", "range", 2.0, lo=0.2, hi=5, step=0.1, help="Scale."),
+        Control(
+            "M",
+            "Particles M",
+            "range",
+            60,
+            lo=5,
+            hi=2000,
+            step=5,
+            log=True,
+            help="Draws per tick.",
+        ),
+        Control("point", "Drag the proposal", "point"),
+    )
+    panels: ClassVar[dict[str, Panel]] = {
+        "proposal": Panel(
+            "Target and proposal",
+            ("target", "tails", "mu", "sigma", "M", "point"),
+            missions=(
+                Mission(
+                    "Move the proposal onto one bump of the two and make it narrow. The ESS looks "
+                    "fine and the estimate is wrong: what has the ESS not seen?",
+                    lambda s: (
+                        s.values["target"] == "two"
+                        and s.ess > 0.6 * s.values["M"]
+                        and abs(s.estimates[-1] - s.mean) > 1
+                    ),
+                ),
+                Mission(
+                    "Find the proposal with the largest ESS for one bump. Is the best width "
+                    "smaller or larger than the target's?",
+                    lambda s: s.values["target"] == "one" and s.ess > 0.98 * s.values["M"],
+                ),
+                Mission(
+                    "Take a normal proposal narrower than the one bump. The predicted ESS falls to "
+                    "zero below 0.7: why? Then give it heavy tails.",
+                    lambda s: (
+                        s.values["target"] == "one"
+                        and s.values["sigma"] <= 0.7
+                        and s.values["tails"] == "student"
+                    ),
+                ),
+            ),
+            alt="Two density curves, target and proposal. Stems below show the weight of each "
+            "particle; a strip on the right shows the estimated means of the last ticks.",
+        )
+    }
+
+    def start(self) -> None:
+        self.estimates: list[float] = []
+        self._sample()
+
+    def advance(self) -> None:
+        self._sample()
+
+    def changed(self, name: str, value: Any) -> None:
+        if name == "point":
+            self.values["mu"] = self.by_name["mu"].clean(round(value[0], 1))
+        if name in ("target", "mu", "sigma", "tails", "point"):
+            self.estimates = []
+        self._sample()
+
+    def p(self, x: np.ndarray) -> np.ndarray:
+        """The target's density."""
+        return sum(
+            w * normal(x, mu, sigma)
+            for w, mu, sigma in zip(*TARGETS[self.values["target"]], strict=True)
+        )
+
+    def q(self, x: np.ndarray) -> np.ndarray:
+        """The proposal's density."""
+        density = normal if self.values["tails"] == "normal" else student
+        return density(x, self.values["mu"], self.values["sigma"])
+
+    @property
+    def mean(self) -> float:
+        """The target's true mean."""
+        w, mu, _ = TARGETS[self.values["target"]]
+        return float(np.dot(w, mu))
+
+    def _sample(self) -> None:
+        v = self.values
+        M = int(v["M"])
+        noise = self.rng.standard_normal(M)
+        if v["tails"] == "student":
+            noise = noise / np.sqrt(self.rng.chisquare(3, M) / 3)
+        self.x = v["mu"] + v["sigma"] * noise
+        with np.errstate(divide="ignore"):
+            log_w = np.log(self.p(self.x)) - np.log(self.q(self.x))
+        self.log_w, _ = pf.normalise(log_w)
+        self.ess = float(pf.ess(self.log_w))
+        self.estimates = [*self.estimates[-99:], float(self.x @ np.exp(self.log_w))]
+
+    def predicted(self) -> float:
+        """M / (1 + chi^2) with chi^2 by quadrature; 0 where the integral does not exist."""
+        v = self.values
+        widest = max(TARGETS[v["target"]][2])
+        if v["tails"] == "normal" and v["sigma"] <= widest / np.sqrt(2):
+            return 0.0
+        x = np.linspace(-60, 60, 6001)
+        p, q = self.p(x), self.q(x)
+        ratio = np.where(p > 0, p * p / np.maximum(q, 1e-290), 0.0)
+        return float(v["M"] / max(ratio.sum() * (x[1] - x[0]), 1.0))
+
+    def readouts(self) -> Readouts:
+        return {
+            "ESS": self.ess,
+            "ESS predicted": self.predicted(),
+            "of M": float(self.values["M"]),
+            "largest weight": float(100 * np.exp(self.log_w.max())),
+            "estimate": self.estimates[-1],
+            "true mean": self.mean,
+            "scatter": float(np.std(self.estimates)),
+        }
+
+    def draw(self, pen: Pen) -> None:
+        p, q, w = self.p(X), self.q(X), np.exp(self.log_w)
+        top = 1.1 * max(p.max(), q.max())
+        pen.view((0.02, 0.45, 0.74, 0.50), (-8, 8), (0, top))
+        pen.area("target", X, p, alpha=0.22)
+        pen.line("target", X, p, width=2)
+        pen.line("proposal", X, q, width=2.5, dash=6)
+        pen.text("target", X[p.argmax()], p.max() + 0.05 * top, "target", size=12, anchor=0)
+        pen.text("proposal", X[q.argmax()] + 0.3, 0.6 * q.max(), "proposal", size=12)
+        pen.view((0.02, 0.08, 0.74, 0.30), (-8, 8), (0, max(3.2 / w.size, 1.1 * w.max())))
+        pen.segments("muted", -8, 1 / w.size, 8, 1 / w.size, width=1)
+        heavy = np.argsort(w)[-400:]
+        pen.stems("particle", self.x[heavy], w[heavy], size=6 if w.size < 200 else 3)
+        pen.text("ink", -7.9, 1.1 * max(3.2 / w.size, 1.1 * w.max()), "weights (line: 1/M)", 12)
+        pen.ticks(0, np.arange(-8, 9, 2))
+        shown = np.clip(self.estimates, -7.9, 7.9)
+        pen.view((0.80, 0.08, 0.18, 0.87), (-1, 100), (-4, 4))
+        pen.segments("target", -1, self.mean, 100, self.mean, width=2)
+        pen.points("particle", np.arange(shown.size), np.clip(shown, -3.95, 3.95), size=5)
+        pen.text("ink", -1, 4.25, "estimates of the mean", size=12)
