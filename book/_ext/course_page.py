@@ -60,6 +60,8 @@ MENDS = (
         re.compile(r'(<i class="theme-switch [^>]*?)\s+title="[^"]*"'),
         r'\1 aria-hidden="true"',
     ),
+    Mend(re.compile(r'(<summary) aria-label="Toggle hidden content"'), r"\1", expected=False),
+    Mend(re.compile(r'<div role="list" (class="citation-list")'), r"<div \1", expected=False),
     Mend(re.compile(r'="Color mode"'), '="Colour mode"'),
     Mend(
         re.compile(r'(<table class="[^"]*\bdocutils\b.*?</table>)', re.S),
@@ -84,9 +86,9 @@ def mend_pages(app: Sphinx, error: Exception | None) -> None:
     if error is not None or app.builder.name != "html":
         return
     top = Path(app.outdir)
-    for name in [*app.env.found_docs, "search", "genindex"]:
-        path = top / f"{name}.html"
-        if not path.exists():
+    for path in sorted(top.rglob("*.html")):
+        name = path.relative_to(top).as_posix()
+        if name.startswith("_static/") or (name == "index.html" and "/" in app.config.root_doc):
             continue
         html, missing = mend(path.read_text(encoding="utf-8"))
         path.write_text(html, encoding="utf-8", newline="\n")
