@@ -10,6 +10,7 @@ import argparse
 import functools
 import hashlib
 import http.server
+import re
 import shutil
 import subprocess
 import sys
@@ -67,7 +68,8 @@ def build() -> None:
 
 def explain(log: str) -> str:
     """Pick the warnings and errors out of Sphinx's log, each once."""
-    lines = [line for line in log.splitlines() if "WARNING" in line or "ERROR" in line]
+    telling = re.compile(r"WARNING|ERROR|^\w*(?:Error|Exception): .")
+    lines = [line for line in log.splitlines() if telling.search(line)]
     return "\n".join(dict.fromkeys(lines)) or "\n".join(log.splitlines()[-15:])
 
 
