@@ -179,8 +179,9 @@ def normalise(
             f"all {log_w.shape[-1]} of them. Widen the sensor noise, wrap the sensor in "
             "OutlierMixture, use more particles, or check the units of measurement and map"
         )
-    log_sum = peak + np.log(np.exp(log_w - peak).sum(axis=-1, keepdims=True))
-    return log_w - log_sum, log_sum[..., 0]
+    shifted = log_w - peak  # first, so that large log-weights keep their digits
+    log_sum = np.log(np.exp(shifted).sum(axis=-1, keepdims=True))
+    return shifted - log_sum, (peak + log_sum)[..., 0]
 
 
 def ess(log_w: ArrayLike) -> NDArray[np.float64] | np.float64:
