@@ -67,6 +67,9 @@ from pfkit.sensors import (
 )
 from pfkit.landmark_sensors import Bearing, Range, RangeBearing
 from pfkit.association import MaximumLikelihood
+from pfkit.beams import BeamModel
+from pfkit.beam_fit import fit_beams
+from pfkit.likelihood_field import LikelihoodField
 from pfkit.intermittent import Intermittent
 from pfkit.robust import Gate, OutlierMixture, Tempered
 from pfkit.estimators import covariance, map_particle, mean_pose, top_share_mean

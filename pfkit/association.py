@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, ParameterError, require_components, require_finite
+from pfkit.errors import DataError, ParameterError, require_components
 from pfkit.landmark_sensors import Bearing, Range, RangeBearing
 from pfkit.sensors import Sensor
 
@@ -68,6 +68,11 @@ class MaximumLikelihood(Sensor):
         """Rows of a measurement: those of the sensor without the identity."""
         return self.sensor.components - 1
 
+    @property
+    def angles(self) -> tuple[int, ...]:  # type: ignore[override]
+        """Rows of a measurement that are angles, those of the sensor."""
+        return self.sensor.angles
+
     def expected(self, pose: Array, **which: Any) -> Array:
         """Noise-free measurements, without their names: (n, K, ...)."""
         return self.sensor.expected(pose, **which)[:-1]  # type: ignore[attr-defined]
@@ -82,7 +87,7 @@ class MaximumLikelihood(Sensor):
 
     def associate(self, z: ArrayLike, pose: Array) -> NDArray[np.int64]:
         """The landmark that each pose finds in each measurement: z (n, K) -> ids (K, ...)."""
-        z = require_finite("z", require_components("z", z, self.components), DataError)
+        z = require_components("z", z, self.components, DataError)
         return np.stack([self._best(z[:, k], pose)[1] for k in range(z.shape[1])])
 
     def _best(self, zk: Array, pose: Array) -> tuple[Array, NDArray[np.int64]]:

@@ -18,6 +18,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -56,7 +57,7 @@ class OccupancyGrid:
         If p is not a table of probabilities, or a setting is out of range.
     """
 
-    p: NDArray[np.float64]
+    p: NDArray[Any]
     resolution: float
     origin: tuple[float, float, float] = (0.0, 0.0, 0.0)
     occupied_thresh: float = 0.65

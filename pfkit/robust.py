@@ -45,6 +45,11 @@ class _Wrapper(Sensor):
         """Rows of a measurement, those of the wrapped sensor."""
         return self.sensor.components
 
+    @property
+    def angles(self) -> tuple[int, ...]:  # type: ignore[override]
+        """Rows of a measurement that are angles, those of the wrapped sensor."""
+        return self.sensor.angles
+
     def check_state(self, pose: ArrayLike) -> Array:
         """Return a state that the wrapped sensor can read."""
         return self.sensor.check_state(pose)

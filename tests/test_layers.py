@@ -25,7 +25,15 @@ LAYERS: dict[str, list[str]] = {
     ],
     "L2": [
         *["motion", "odometry_motion", "wheels", "targets", "sensors", "landmark_sensors"],
-        *["association", "beams", "likelihood_field", "robust", "faults", "intermittent"],
+        *[
+            "association",
+            "beams",
+            "beam_fit",
+            "likelihood_field",
+            "robust",
+            "faults",
+            "intermittent",
+        ],
     ],
     "L3": [
         *["estimators", "density", "modes"],
