@@ -41,11 +41,6 @@ class Intermittent(Sensor):
         """Rows of a measurement: one more than the wrapped sensor's."""
         return self.sensor.components + 1
 
-    @property
-    def world(self) -> Any:
-        """The map of the wrapped sensor."""
-        return self.sensor.world  # type: ignore[attr-defined]
-
     def expected(self, pose: Array, **which: Any) -> Array:
         """Noise-free measurement with every column seen: (n + 1, K, ...)."""
         return _with_row(self.sensor.expected(pose, **which))  # type: ignore[attr-defined]

@@ -190,7 +190,7 @@ def simulate_log(
     start = require_finite("start", start)
     if batch is not None:
         start = _side_by_side(start, require_count("batch", batch))
-    world = getattr(sensor, "world", None)
+    world = _world_of(sensor)
     on_the_road, at_the_sensor = rng.spawn(2)
     u, truth = drive(start, u, motion, on_the_road, steps=steps, kidnap=kidnap, world=world)
     z, false = sense(truth, sensor, at_the_sensor, every=every, sight=sight, outliers=outliers)
@@ -239,6 +239,13 @@ def _carry_off(
         return world.sample_poses(shape[1:] or (1,), rng).reshape(shape)
     goal = require_finite("kidnap pose", goal)
     return np.broadcast_to(goal.reshape(-1, *(1,) * (len(shape) - 1)), shape).copy()
+
+
+def _world_of(sensor: Any) -> Any:
+    """The map of a sensor, or of the sensor that it wraps; None if it has none."""
+    while not hasattr(sensor, "world") and hasattr(sensor, "sensor"):
+        sensor = sensor.sensor
+    return getattr(sensor, "world", None)
 
 
 def _look(sensor: Any, pose: Array, sight: Callable | None, rng: np.random.Generator) -> Array:

@@ -1,11 +1,15 @@
 """The worlds are what their docstrings promise."""
 
+import importlib.util
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import pfkit as pf
 from pfkit import worlds
 
+ROOT = Path(__file__).resolve().parents[1]
 STILL = pf.VelocityMotion((0.0,) * 4)
 
 
@@ -93,3 +97,45 @@ def test_every_room_of_the_office_can_be_reached():
 def test_cells_that_lose_walls_are_refused(resolution):
     with pytest.raises(pf.ParameterError):
         worlds.office(resolution)
+
+
+# the drives in data/worlds
+
+
+def load_maker():
+    path = ROOT / "tools" / "make_worlds.py"
+    spec = importlib.util.spec_from_file_location("make_worlds", path)
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+MAKER = load_maker()
+
+
+@pytest.mark.parametrize("name", MAKER.WORLDS)
+def test_the_stored_drive_is_what_the_script_makes(name):
+    stored, made = pf.read_log(MAKER.HERE / name), MAKER.WORLDS[name]()
+    close = {"rtol": 1e-4, "atol": 1e-9, "err_msg": "run python tools/make_worlds.py"}
+    np.testing.assert_allclose(stored.truth, made.truth, **close)
+    np.testing.assert_allclose(stored.u, made.u, **close)
+    for one, other in zip(stored.z, made.z, strict=True):
+        np.testing.assert_allclose(one, other, **close)
+    if made.outlier is not None:
+        assert all((a == b).all() for a, b in zip(stored.outlier, made.outlier, strict=True))
+    if stored.world is not None:
+        assert stored.world.contains(*stored.truth[:2]).mean() > 0.95
+
+
+def test_the_stored_drives_are_small():
+    files = [path for path in MAKER.HERE.rglob("*") if path.is_file()]
+    assert sum(path.stat().st_size for path in files) < 1_000_000
+
+
+def test_a_filter_follows_the_stored_square():
+    log = pf.read_log(MAKER.HERE / "square")
+    sensor = pf.RangeBearing(log.world, 0.2, 0.05)
+    rng = np.random.default_rng(1)
+    bel = pf.gaussian_prior(500, log.start, np.full(3, 0.1), rng)
+    history = pf.run(log, bel, MAKER.MOTION, sensor, rng)
+    assert pf.rmse(history.estimate, history.truth) < 0.15
