@@ -32,6 +32,7 @@ import json
 import re
 import shutil
 from html import escape
+from importlib import import_module
 from pathlib import Path
 from typing import Any, ClassVar
 
@@ -141,6 +142,17 @@ def is_check(source: str, lab: str, item: str) -> bool:
     )
 
 
+def question_version(module: str, item: str) -> str:
+    """The version that the lab itself gives to a question."""
+    lab = import_module(f"pfkit.labs.{module}").LAB
+    if item not in lab.items:
+        logger.warning(
+            "live_page: pfkit.labs.%s has no item %r (cell metadata answer)", module, item
+        )
+        return ""
+    return lab.items[item].version
+
+
 def read_lab(cells: list[dict[str, Any]]) -> dict[str, Any] | None:
     """The code cells of a notebook as a page needs them; None if it has nothing to answer."""
     code = [(i, c) for i, c in enumerate(cells) if c["cell_type"] == "code"]
@@ -154,11 +166,12 @@ def read_lab(cells: list[dict[str, Any]]) -> dict[str, Any] | None:
         entry: dict[str, Any] = {"index": i, "source": sources[i], "kind": "code"}
         item = cell["metadata"].get("answer")
         if item:
-            stub = sources[i].strip().encode()
-            entry.update(kind="answer", item=item, version=hashlib.sha256(stub).hexdigest()[:12])
+            entry.update(kind="answer", item=item, version=question_version(module, item))
             open_item = item
-        elif open_item and is_check(sources[i], alias, open_item):
-            entry.update(kind="check", item=open_item)
+        elif cell["metadata"].get("check") or (
+            open_item and is_check(sources[i], alias, open_item)
+        ):
+            entry.update(kind="check", item=cell["metadata"].get("check", open_item))
         out.append(entry)
     return {"lab": module, "alias": alias, "cells": out}
 

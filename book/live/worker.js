@@ -97,8 +97,9 @@ const DO = {
     pair.destroy();
     return { drawing, report, ms: performance.now() - start };
   },
-  cell: (m) => cells.run(m.source, m.check || ""),
-  names: (m) => cells.names(m.sources),
+  cell: (m) => cells.run(m.cells, m.index),
+  progress: (m) => cells.progress(m.lab),
+  restore: (m) => cells.restore(m.lab, m.text),
 };
 
 self.onmessage = async ({ data }) => {

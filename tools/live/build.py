@@ -39,7 +39,7 @@ PARTS = CACHE / "parts"
 OURS = (ROOT / "pfkit" / "explore" / "web", ROOT / "book" / "live")
 RUNTIME = ("pyodide.js", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip")
 # The edge of pfkit needs matplotlib, ipywidgets or nbformat, which the page does not have.
-NOT_IN_PAGE = ("plotting.py", "widgets.py", "labs/grade.py", "labs/release.py", "labs/controls.py")
+NOT_IN_PAGE = ("plotting.py", "widgets.py", "labs/grade.py", "labs/release.py")
 # What only NumPy's own developers need. (Its import does need _multiarray_tests*.so.)
 NOT_NEEDED = re.compile(r"/(tests|include|f2py|distutils|_examples|_pyinstaller)/|\.(pyi|a)$")
 HOOK = '''\
