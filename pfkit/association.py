@@ -87,7 +87,7 @@ class MaximumLikelihood(Sensor):
 
     def associate(self, z: ArrayLike, pose: Array) -> NDArray[np.int64]:
         """The landmark that each pose finds in each measurement: z (n, K) -> ids (K, ...)."""
-        z = require_components("z", z, self.components, DataError)
+        z, pose = require_components("z", z, self.components, DataError), self.check_state(pose)
         return np.stack([self._best(z[:, k], pose)[1] for k in range(z.shape[1])])
 
     def _best(self, zk: Array, pose: Array) -> tuple[Array, NDArray[np.int64]]:

@@ -20,7 +20,14 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.beams import SHARES, BeamModel
-from pfkit.errors import DataError, ShapeError, as_numbers, require_count, require_finite
+from pfkit.errors import (
+    DataError,
+    ParameterError,
+    ShapeError,
+    as_numbers,
+    require_count,
+    require_finite,
+)
 
 Array = NDArray[np.float64]
 
@@ -61,7 +68,7 @@ def fit_beams(
 
     Raises
     ------
-    ShapeError, DataError
+    ShapeError, DataError, ParameterError
         If r and length do not match, or a reading is impossible under the model.
 
     Notes
@@ -70,12 +77,12 @@ def fit_beams(
     r_max are left out of sigma_hit. One kind that hardly ever occurs is learned badly: look
     at the shares before you trust its width.
     """
+    if not isinstance(model, BeamModel):
+        raise ParameterError(f"model must be a BeamModel to start from, got {model!r:.60}")
     r, length = require_finite("r", r, DataError).ravel(), as_numbers("length", length).ravel()
     require_count("iterations", iterations)
     if r.shape != length.shape or r.size == 0:
         raise ShapeError(f"r and length must match and hold a reading, got {r.size}, {length.size}")
-    if (r < 0).any() or not (length >= 0).all():
-        raise DataError("ranges and lengths must be >= 0; a lost beam reads r_max")
     for _ in range(iterations):
         previous, model = model, _refit(model, r, length)
         old, new = _settings(previous), _settings(model)

@@ -162,7 +162,10 @@ class BeamModel(Sensor):
 
         Where r is r_max they are probabilities of reading r_max; elsewhere in 1 / metres.
         """
-        r, length = np.broadcast_arrays(as_numbers("r", r), as_numbers("length", length))
+        r, length = require_finite("r", r, DataError), as_numbers("length", length)
+        if not ((r >= 0).all() and (length >= 0).all()):
+            raise DataError("ranges and lengths must be >= 0; a lost beam reads r_max")
+        r, length = np.broadcast_arrays(r, length)
         top, lam = r >= self.r_max, self.lambda_short
         scaled = (r - length) / self.sigma_hit
         peak = 1 / (self.sigma_hit * math.sqrt(2 * math.pi))
@@ -183,8 +186,6 @@ class BeamModel(Sensor):
         """Sum of log densities over the beams: z (2, K) or (2, K, B, 1), one number per pose."""
         r, phi = require_components("z", z, 2, DataError)
         pose = self.check_state(pose)
-        if (r < 0).any():
-            raise DataError(f"ranges must be >= 0, got {r.min()}; a lost beam reads r_max")
         total = np.zeros(pose.shape[1:])
         for rk, length in zip(r, self.lengths(pose, phi), strict=True):
             density = np.tensordot(self.shares, self.parts(rk, length), axes=1)

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_positive
+from pfkit.errors import ParameterError, ShapeError, require_positive
 
 Array = NDArray[np.float64]
 
@@ -39,17 +39,21 @@ def distance_field(occupied: ArrayLike, resolution: float = 1.0) -> Array:
     Raises
     ------
     ShapeError, ParameterError
-        If `occupied` is not a table, or the resolution is not positive.
+        If `occupied` is not a table of booleans, or the resolution is not positive.
 
     Notes
     -----
     Source: P. F. Felzenszwalb and D. P. Huttenlocher, "Distance transforms of sampled
     functions", Theory of Computing 8 (2012), for the split; the search here is simpler.
     """
-    occupied = np.asarray(occupied, dtype=bool)
+    occupied = np.asarray(occupied)
     require_positive("resolution", resolution)
     if occupied.ndim != 2 or occupied.size == 0:
         raise ShapeError(f"occupied must have shape (rows, columns), got {occupied.shape}")
+    if occupied.dtype != bool:
+        raise ParameterError(
+            f"occupied must hold booleans, got {occupied.dtype}; pass grid.occupied, not grid.p"
+        )
     along = _along_columns(occupied) ** 2
     squared = along.copy()
     buffer = np.empty_like(along)

@@ -33,7 +33,7 @@ from pfkit.errors import (
     require_fraction,
     require_positive,
 )
-from pfkit.occupancy import OccupancyGrid
+from pfkit.occupancy import OccupancyGrid, require_grid
 from pfkit.sensors import Sensor
 
 Array = NDArray[np.float64]
@@ -75,6 +75,7 @@ class LikelihoodField(Sensor):
     angles: ClassVar[tuple[int, ...]] = (1,)
 
     def __post_init__(self) -> None:
+        require_grid(self.world)
         require_positive("r_max", self.r_max)
         require_positive("sigma_hit", self.sigma_hit)
         hit, rand = require_fraction("z_hit", self.z_hit), require_fraction("z_rand", self.z_rand)
@@ -94,6 +95,8 @@ class LikelihoodField(Sensor):
     def log_likelihood(self, z: ArrayLike, pose: Array) -> Array:
         """Sum of log q over the beams: z (2, K) or (2, K, B, 1), one number per pose."""
         z = require_components("z", z, 2, DataError)
+        if (z[0] < 0).any():
+            raise DataError(f"ranges must be >= 0, got {z[0].min()}; a lost beam reads r_max")
         x, y, theta = self.check_state(pose)
         rows, columns = self._log_q.shape  # type: ignore[attr-defined]
         log_q = self._log_q.ravel()  # type: ignore[attr-defined]

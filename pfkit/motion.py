@@ -37,6 +37,7 @@ from pfkit.errors import (
     require_components,
     require_finite,
     require_non_negative,
+    require_positive,
     require_rng,
 )
 from pfkit.geometry import between, wrap
@@ -197,6 +198,7 @@ class VelocityMotion:
         """
         u = require_components("u", u, 3)
         v, omega, dt = u
+        require_positive("dt", dt)
         var_v, var_omega, var_gamma = self.variances(u)
         dx, dy, turn = between(pose0, pose1)
         chord, beta = np.hypot(dx, dy), np.arctan2(dy, dx)

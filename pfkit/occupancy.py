@@ -30,6 +30,7 @@ from pfkit.errors import (
     ShapeError,
     require_finite,
     require_positive,
+    require_rng,
     require_shape,
 )
 from pfkit.map_files import read_pgm, read_settings, write_pgm
@@ -106,7 +107,7 @@ class OccupancyGrid:
     def to_cells(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Column and row, with fractions, of points in the world: (2, ...)."""
         x0, y0, yaw = self.origin
-        dx, dy = np.asarray(x, dtype=float) - x0, np.asarray(y, dtype=float) - y0
+        dx, dy = require_finite("x", x) - x0, require_finite("y", y) - y0
         c, s = np.cos(yaw) / self.resolution, np.sin(yaw) / self.resolution
         return np.stack((c * dx + s * dy, c * dy - s * dx))
 
@@ -133,6 +134,7 @@ class OccupancyGrid:
             If the map has no free cell.
         """
         shape = require_shape("number of poses", shape)
+        require_rng(rng)
         rows, columns = np.nonzero(self.free)
         if rows.size == 0:
             raise ParameterError(
@@ -173,4 +175,12 @@ class OccupancyGrid:
             f"origin: [{x!r}, {y!r}, {yaw!r}]\nnegate: 0\n"
             f"occupied_thresh: {self.occupied_thresh!r}\nfree_thresh: {self.free_thresh!r}\n",
             encoding="utf-8",
+        )
+
+
+def require_grid(world: Any) -> None:
+    """Raise `ParameterError` unless `world` is an OccupancyGrid."""
+    if not isinstance(world, OccupancyGrid):
+        raise ParameterError(
+            f"world must be an OccupancyGrid, got {world!r:.60}; load one or wrap a table of walls"
         )

@@ -23,8 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, require_components, require_finite
-from pfkit.occupancy import OccupancyGrid
+from pfkit.errors import ParameterError, ShapeError, require_components, require_finite
+from pfkit.occupancy import OccupancyGrid, require_grid
 
 Array = NDArray[np.float64]
 
@@ -51,6 +51,7 @@ class RayCaster:
     world: OccupancyGrid
 
     def __post_init__(self) -> None:
+        require_grid(self.world)
         rows, columns = self.world.p.shape
         stop = np.ones((rows + 2, columns + 2), dtype=bool)  # a rim, so that rays end there
         stop[1:-1, 1:-1] = self.world.occupied
@@ -78,8 +79,10 @@ class RayCaster:
         ShapeError, ParameterError
             If pose or angles have the wrong shape or are not finite, or r_max is not positive.
         """
-        pose = require_finite("pose", require_components("pose", pose, 3))
+        pose = require_components("pose", pose, 3)
         phi = require_finite("angles", angles)
+        if phi.ndim == 0 or phi.size == 0:
+            raise ShapeError(f"angles must have shape (K,), K >= 1, got {phi.shape}")
         if not r_max > 0:
             raise ParameterError(f"r_max must be > 0, got {r_max}")
         if phi.ndim == 1:

@@ -176,6 +176,13 @@ def test_bad_alphas_are_named(alpha, error):
         pf.VelocityMotion(alpha)
 
 
+def test_a_seed_is_no_generator_and_no_time_has_no_density():
+    with pytest.raises(pf.ParameterError, match="default_rng"):
+        FULL.sample(np.zeros(3), (1.0, 0.0, 1.0), 7)
+    with pytest.raises(pf.ParameterError, match="dt"):
+        FULL.log_density(np.ones(3), (1.0, 0.0, 0.0), np.zeros(3))
+
+
 def test_a_cloud_that_is_transposed_is_named():
     with pytest.raises(pf.ShapeError, match="transpose"):
         pf.VelocityMotion().mean(np.zeros((7, 3)), (1.0, 0.0, 1.0))

@@ -73,6 +73,8 @@ def test_between_the_thresholds_nobody_knows():
         (lambda: pf.OccupancyGrid([[math.nan]], 1.0), pf.ParameterError, "finite"),
         (lambda: pf.OccupancyGrid([[0.0]], 0.0), pf.ParameterError, "resolution"),
         (lambda: pf.OccupancyGrid([[0.0]], 1.0, (0, 0)), pf.ShapeError, "origin"),
+        (lambda: ASKEW.contains(math.nan, 0.0), pf.ParameterError, "x must be finite"),
+        (lambda: ASKEW.sample_poses(3, 7), pf.ParameterError, "rng"),
         (lambda: pf.OccupancyGrid([[0.0]], 1.0, free_thresh=0.9), pf.ParameterError, "thresholds"),
     ],
 )

@@ -124,5 +124,9 @@ def test_bad_input_is_named():
         caster.cast(np.zeros((5, 3)), [0.0], 1.0)
     with pytest.raises(pf.ParameterError, match="finite"):
         caster.cast((0.5, math.nan, 0.0), [0.0], 1.0)
+    with pytest.raises(pf.ShapeError, match="angles"):
+        caster.cast((0.5, 0.5, 0.0), [], 1.0)
+    with pytest.raises(pf.ParameterError, match="OccupancyGrid"):
+        pf.RayCaster(np.zeros((3, 3)))
     with pytest.raises(pf.ParameterError, match="r_max"):
         caster.cast((0.5, 0.5, 0.0), [0.0], 0.0)
