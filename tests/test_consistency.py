@@ -116,6 +116,7 @@ def test_the_centre_of_a_cloud_is_all_inside_and_a_far_truth_all_outside():
             pf.ShapeError,
         ),
         (lambda: pf.credibility(pf.from_weights(np.ones((3, 5))), np.zeros(3)), pf.ParameterError),
+        (lambda: pf.credibility(pf.from_weights(np.eye(3)), np.zeros((3, 4))), pf.ShapeError),
     ],
 )
 def test_bad_input_is_named(call, error):

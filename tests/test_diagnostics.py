@@ -131,3 +131,24 @@ def test_trace_repeats_the_history():
     np.testing.assert_allclose(
         np.sqrt(np.mean(table["error"] ** 2)), pf.rmse(history.estimate, history.truth)
     )
+
+
+def test_what_cannot_be_tabulated_or_timed_is_named():
+    log = circle_log(3)
+    bel = pf.gaussian_prior((2, 50), np.zeros(3), np.full(3, 0.1), rng())
+    sensor = pf.RangeBearing(pf.LandmarkMap([[5.0], [5.0]]), 0.1, 0.1)
+    with pytest.raises(pf.ShapeError, match="one run"):
+        pf.trace(pf.run(log, bel, pf.VelocityMotion(), sensor, rng()))
+    with pytest.raises(pf.ShapeError, match="one row per time"):
+        pf.settle_time(np.arange(3), np.zeros(4), 1.0)
+    with pytest.raises(pf.ParameterError, match="limit"):
+        pf.settle_time(np.arange(3), np.zeros(3), 0.0)
+
+
+def test_trace_without_a_truth_has_no_error():
+    log = circle_log(3)
+    blind = Log(log.t, log.u, log.z)
+    bel = pf.gaussian_prior(50, np.zeros(3), np.full(3, 0.1), rng())
+    sensor = pf.RangeBearing(pf.LandmarkMap([[5.0], [5.0]]), 0.1, 0.1)
+    table = pf.trace(pf.run(blind, bel, pf.VelocityMotion(), sensor, rng()))
+    assert np.isnan(table["error"]).all()

@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
+from pfkit import worlds
 
 STILL = pf.VelocityMotion((0.0,) * 4)
 NOISY = pf.VelocityMotion((0.02, 0.01, 0.01, 0.02))
@@ -327,3 +328,37 @@ def test_bad_parts_are_named():
     clocks = np.ones((3, 4, 2, 1)) * np.array([1.0, 2.0]).reshape(2, 1)
     with pytest.raises(pf.ParameterError, match="clock"):
         pf.simulate_log(np.zeros((3, 2, 1)), clocks, STILL, SENSOR, rng())
+    with pytest.raises(pf.ShapeError, match="truth"):
+        pf.sense(START, SENSOR, rng())
+    with pytest.raises(pf.ShapeError, match="drop batch"):
+        pf.simulate_log(np.zeros((3, 2, 1)), TURN, STILL, SENSOR, rng(), batch=2)
+
+
+# beams in a grid
+
+
+def test_beams_of_a_batch_are_those_of_ray_casting_but_for_labelled_ones():
+    grid = worlds.office()
+    directions = np.linspace(-2.0, 2.0, 9)
+    perfect = {"z_hit": 1.0, "z_short": 0.0, "z_max": 0.0, "z_rand": 0.0}
+    sensor = pf.BeamModel(grid, directions, 8.0, sigma_hit=0.02, **perfect)
+    log = pf.simulate_log(
+        worlds.OFFICE_START,
+        pf.PurePursuit(worlds.OFFICE_ROUTE, v=0.5, dt=0.2),
+        pf.VelocityMotion((0.005, 0.001, 0.001, 0.01)),
+        sensor,
+        rng(),
+        steps=40,
+        batch=3,
+        every=5,
+        outliers=pf.Outliers(0.2, (0.0,), (8.0,)),
+        kidnap={20: None},
+    )
+    assert log.world is grid
+    assert grid.contains(*log.truth[:2, 20]).all()
+    for k in range(4, 40, 5):
+        honest = ~log.outlier[k]
+        miss = log.z[k][0] - sensor.expected(log.truth[:, k])[0]
+        assert np.abs(miss[honest]).max() < 6 * 0.02
+        assert log.z[k].shape == (2, 9, 3, 1)
+    assert 0.1 < np.mean([labels.mean() for labels in log.outlier[4::5]]) < 0.3

@@ -117,3 +117,11 @@ def test_hypothesis_mass_of_a_batch_is_that_of_its_runs():
         np.testing.assert_allclose(
             together[:, b], pf.hypothesis_mass(one, poses[..., b], 1.0, angle=1.0)
         )
+
+
+def test_candidates_of_the_wrong_shape_are_refused():
+    bel = pf.from_weights(np.zeros((3, 5)))
+    with pytest.raises(pf.ShapeError, match="poses"):
+        pf.hypothesis_mass(bel, np.zeros(3), 1.0)
+    with pytest.raises(pf.ParameterError, match="radius"):
+        pf.hypothesis_mass(bel, np.zeros((3, 1)), 0.0)
