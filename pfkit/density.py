@@ -18,7 +18,13 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_components, require_positive
+from pfkit.errors import (
+    ParameterError,
+    ShapeError,
+    require_components,
+    require_finite,
+    require_positive,
+)
 from pfkit.estimators import covariance
 from pfkit.geometry import wrap
 from pfkit.particles import Particles, require_particles
@@ -75,7 +81,7 @@ def kde(bel: Particles, points: ArrayLike, bandwidth: ArrayLike | None = None) -
     """
     D = len(_single(bel).state)
     points = require_components("points", points, D)
-    h = silverman_bandwidth(bel) if bandwidth is None else np.asarray(bandwidth, dtype=float)
+    h = silverman_bandwidth(bel) if bandwidth is None else require_finite("bandwidth", bandwidth)
     if h.shape != (D,):
         raise ShapeError(f"bandwidth must hold one width per component ({D}), got shape {h.shape}")
     if bandwidth is None and not (h > 0).all():

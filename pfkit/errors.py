@@ -7,6 +7,7 @@ which is a `ValueError`, so ``except ValueError`` still works for those who pref
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 import numpy as np
@@ -131,3 +132,30 @@ def require_method(name: str, model: Any, *methods: str) -> None:
                 f"{name} must have a method {method}(...), got {model!r:.60}; "
                 "pass a model object, not its class or a number"
             )
+
+
+def require_instance(name: str, value: Any, kind: type) -> None:
+    """Raise `ParameterError` unless `value` is an object of the class `kind`."""
+    if not isinstance(value, kind):
+        raise ParameterError(
+            f"{name} must be a {kind.__name__}, got {value!r:.60}; build one first"
+        )
+
+
+def require_callable(name: str, value: Any) -> None:
+    """Raise `ParameterError` unless `value` is a function."""
+    if not callable(value):
+        raise ParameterError(
+            f"{name} must be a function, got {value!r:.60}; pass it without calling it"
+        )
+
+
+def require_number(name: str, value: Any, above: float = -math.inf) -> float:
+    """Return `value` as a float; raise `ParameterError` unless it is one number > `above`.
+
+    Infinity is a number here, because it switches a bound off; NaN is not.
+    """
+    array = as_numbers(name, value)
+    if array.ndim or not array > above:
+        raise ParameterError(f"{name} must be one number > {above}, got {value!r:.60}")
+    return float(array)

@@ -25,7 +25,17 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, require_components, require_finite
+from pfkit.errors import (
+    DataError,
+    ParameterError,
+    ShapeError,
+    require_callable,
+    require_components,
+    require_finite,
+    require_instance,
+    require_method,
+    require_number,
+)
 from pfkit.geometry import circular_mean
 from pfkit.kalman import Gaussian, angles_of, condition, wrap_rows
 from pfkit.motion import MotionModel
@@ -55,10 +65,16 @@ def linearise(
     -------
     mean (n,), covariance (n, n), and cross-covariance (N, n) of argument and result
 
+    Raises
+    ------
+    ShapeError, ParameterError
+        If mean and Sigma do not match, or f is not a function.
+
     Notes
     -----
     J by central differences, in one call of f with 2 N + 1 points.
     """
+    mean, Sigma = _moments(f, mean, Sigma)
     step = 1e-5 * np.eye(mean.size)
     value = f(np.column_stack((mean, mean[:, None] + step, mean[:, None] - step)))
     y, difference = value[:, 0], value[:, 1 : mean.size + 1] - value[:, mean.size + 1 :]
@@ -75,13 +91,14 @@ def unscented(
     .. math:: y = \frac{1}{2N} \sum_i f(x_i), \qquad
               Y = \frac{1}{2N} \sum_i (f(x_i) - y)(f(x_i) - y)^T, \qquad \Sigma = s s^T
 
-    Parameters, returns as in `linearise`. The mean of an angle is circular.
+    Parameters, returns and errors are those of `linearise`. The mean of an angle is circular.
 
     Notes
     -----
     Source: Probabilistic Robotics, Table 3.4, with kappa = 0: all weights are equal and
     positive, so Y is a covariance whatever f does (the "cubature" points).
     """
+    mean, Sigma = _moments(f, mean, Sigma)
     values, vectors = np.linalg.eigh(Sigma)
     root = vectors * np.sqrt(np.maximum(values, 0.0) * mean.size)
     deviation = np.hstack((root, -root))
@@ -112,11 +129,18 @@ def gaussian_predict(
     Gaussian
     cross : array (D, D), covariance of the states before and after, for the smoother
 
+    Raises
+    ------
+    ParameterError, ShapeError
+        If the motion's noise is not Gaussian, or an argument is not what it should be.
+
     Notes
     -----
     Source: Probabilistic Robotics, Tables 3.3, 3.4, 7.2 and 7.4, with noise in the control.
     """
-    u, angles = np.asarray(u, dtype=float), angles_of(bel.mean)
+    require_instance("bel", bel, Gaussian)
+    require_method("motion", motion, "sample")
+    u, angles = require_finite("u", u), angles_of(bel.mean)
     mean, Sigma, f = _augment(bel, lambda state, rng: motion.sample(state, u, rng))
     y, Y, cross = transform(f, mean, Sigma, angles)
     return Gaussian(wrap_rows(y, angles), Y), cross[: bel.mean.size]
@@ -148,15 +172,20 @@ def gaussian_update(
     Raises
     ------
     ParameterError
-        If the sensor's noise is not Gaussian.
+        If the sensor's noise is not Gaussian, or the gate is not positive.
+    ShapeError, DataError
+        If z does not have the sensor's rows, or is not finite.
 
     Notes
     -----
     Source: Probabilistic Robotics, Table 7.2, lines 9 to 20.
     """
+    require_instance("bel", bel, Gaussian)
+    require_instance("sensor", sensor, Sensor)
+    gate = require_number("gate", gate, above=0.0)
     if z is None or np.size(z) == 0:
         return bel, 0.0, 0
-    z = require_finite("z", require_components("z", z, sensor.components))
+    z = require_components("z", z, sensor.components, DataError)
     total, rejected = 0.0, 0
     for column in z.reshape(z.shape[0], -1).T:
         which: dict[str, Any] = {"ids": column[-1:]} if hasattr(sensor, "world") else {}
@@ -167,6 +196,15 @@ def gaussian_update(
         bel, log_evidence, out = condition(bel, innovation, S, cross[: bel.mean.size], gate)
         total, rejected = total + log_evidence, rejected + out
     return bel, total, rejected
+
+
+def _moments(f: Function, mean: ArrayLike, Sigma: ArrayLike) -> tuple[Array, Array]:
+    """Check what both transforms need."""
+    require_callable("f", f)
+    mean, Sigma = require_finite("mean", mean), require_finite("Sigma", Sigma)
+    if mean.ndim != 1 or Sigma.shape != (mean.size, mean.size):
+        raise ShapeError(f"mean (N,) needs Sigma (N, N), got {mean.shape} and {Sigma.shape}")
+    return mean, Sigma
 
 
 def _measure(sensor: Any, state: Array, rng: Any, which: dict[str, Any]) -> Array:

@@ -27,7 +27,15 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DegenerateWeightsError
+from pfkit.errors import (
+    DataError,
+    DegenerateWeightsError,
+    require_count,
+    require_finite,
+    require_instance,
+    require_method,
+    require_rng,
+)
 from pfkit.geometry import compose
 from pfkit.log import Log
 from pfkit.motion import MotionModel
@@ -63,6 +71,8 @@ def predict_by_convolution(
     ------
     DegenerateWeightsError
         If all mass leaves the bounds.
+    ParameterError, ShapeError
+        If an argument is not what it should be.
 
     Notes
     -----
@@ -70,7 +80,8 @@ def predict_by_convolution(
     adds at most a quarter of a cell squared to its variance. O(s N log N). The FFT rounds:
     what falls below 1e-15 of the largest cell is set to zero.
     """
-    moves = motion.sample(np.zeros((3, draws)), np.asarray(u, dtype=float), rng)
+    u = _check(bel, u, motion, rng)
+    moves = motion.sample(np.zeros((3, require_count("draws", draws))), u, rng)
     if not moves.any():
         return bel
     reach = np.ceil(np.hypot(moves[0], moves[1]).max() / bel.cell[:2]).astype(np.int64) + 1
@@ -131,19 +142,30 @@ def predict_by_transport(
     ------
     DegenerateWeightsError
         If all mass leaves the bounds.
+    ParameterError, ShapeError
+        If an argument is not what it should be.
 
     Notes
     -----
     Source: Probabilistic Robotics, Table 8.1, its integral done by sampling. O(K N).
     """
+    u, draws = _check(bel, u, motion, rng), require_count("draws", draws)
     occupied = np.flatnonzero(bel.p)
     mass, centre = bel.p.ravel()[occupied] / draws, bel.poses.reshape(3, -1)[:, occupied]
     p = np.zeros(bel.p.size)
     for _ in range(draws):
         start = centre + bel.cell[:, None] * (rng.random(centre.shape) - 0.5)
-        cell, inside = bel.index(motion.sample(start, np.asarray(u, dtype=float), rng))
+        cell, inside = bel.index(motion.sample(start, u, rng))
         p += np.bincount(cell, mass * inside, p.size)
     return _keep(bel, p.reshape(bel.p.shape))
+
+
+def _check(bel: PoseGrid, u: ArrayLike, motion: MotionModel, rng: np.random.Generator) -> Array:
+    """Check what both predictions need; return the control as an array."""
+    require_instance("bel", bel, PoseGrid)
+    require_method("motion", motion, "sample")
+    require_rng(rng)
+    return require_finite("u", u)
 
 
 def _keep(bel: PoseGrid, p: Array) -> PoseGrid:
@@ -179,11 +201,15 @@ def update_grid(bel: PoseGrid, z: ArrayLike | None, sensor: SensorModel) -> tupl
     ------
     DegenerateWeightsError
         If the measurement is impossible in every cell.
+    ParameterError, ShapeError, DataError
+        If an argument is not what it should be.
     """
+    require_instance("bel", bel, PoseGrid)
+    require_method("sensor", sensor, "log_likelihood")
     if z is None or np.size(z) == 0:
         return bel, 0.0
     prior = bel.particles()
-    log_likelihood = sensor.log_likelihood(np.asarray(z, dtype=float), prior.state)
+    log_likelihood = sensor.log_likelihood(require_finite("z", z, DataError), prior.state)
     log_p, log_evidence = normalise(prior.log_w + log_likelihood)
     return replace(bel, p=np.exp(log_p).reshape(bel.p.shape)), float(log_evidence)
 
@@ -213,7 +239,13 @@ def run_grid(
     -------
     PoseGrid, the last belief
     log_evidence : array (T,)
+
+    Raises
+    ------
+    ParameterError, ShapeError, DataError, DegenerateWeightsError
+        As the predict functions and `update_grid`.
     """
+    require_instance("log", log, Log)
     log_evidence = np.empty(len(log))
     for k, (_, u, z, _) in enumerate(log):
         bel, log_evidence[k] = update_grid(predict(bel, u, motion, rng), z, sensor)

@@ -175,11 +175,18 @@ def door_likelihood(doors: ArrayLike, z: bool, hit: float, false: float) -> Arra
     Returns
     -------
     array (n,), p(z | cell). With hit = false it is the same everywhere: nothing is learned.
+
+    Raises
+    ------
+    ParameterError
+        If doors or z are not True and False, or a rate is not in [0, 1].
     """
     hit, false = require_fraction("hit", hit), require_fraction("false", false)
-    doors = np.asarray(doors)
-    if doors.ndim != 1 or not np.isin(doors, (0, 1)).all():
+    doors, report = np.asarray(doors), np.asarray(z)
+    if doors.ndim != 1 or doors.size == 0 or not np.isin(doors, (0, 1)).all():
         raise ParameterError(f"doors must be a list of True and False, got {doors!r:.80}")
+    if report.ndim or report not in (0, 1):
+        raise ParameterError(f"z must be True (a door) or False (none), got {z!r:.80}")
     p_door = np.where(doors.astype(bool), hit, false)
     return p_door if z else 1 - p_door
 

@@ -24,7 +24,13 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_finite
+from pfkit.errors import (
+    ParameterError,
+    ShapeError,
+    require_finite,
+    require_instance,
+    require_number,
+)
 from pfkit.geometry import wrap
 
 Array = NDArray[np.float64]
@@ -94,15 +100,22 @@ def kalman_predict(
     -------
     Gaussian
 
+    Raises
+    ------
+    ShapeError, ParameterError
+        If shapes do not match, a number is not finite, or Sigma_u is not a covariance.
+
     Notes
     -----
     Source: Probabilistic Robotics, Table 3.1, lines 2 and 3.
     """
+    require_instance("bel", bel, Gaussian)
     F, D = require_finite("F", F), bel.mean.size
     Sigma_u, shift = require_finite("Sigma_u", Sigma_u), require_finite("shift", shift)
-    if F.shape != (D, D) or Sigma_u.shape != (D, D):
+    if F.shape != (D, D) or Sigma_u.shape != (D, D) or shift.shape not in ((), (D,)):
         raise ShapeError(
-            f"F and Sigma_u must have shape {(D, D)}, got {F.shape} and {Sigma_u.shape}"
+            f"F and Sigma_u must have shape {(D, D)} and shift {(D,)}, got {F.shape}, "
+            f"{Sigma_u.shape} and {shift.shape}"
         )
     return Gaussian(F @ bel.mean + shift, F @ bel.Sigma @ F.T + Sigma_u)
 
@@ -131,10 +144,17 @@ def kalman_update(
     log_evidence : float, log N(z; H mu, S); 0 if z was rejected
     rejected : bool
 
+    Raises
+    ------
+    ShapeError, ParameterError
+        If shapes do not match, a number is not finite, or the gate is not positive.
+
     Notes
     -----
     Source: Probabilistic Robotics, Table 3.1, lines 4 to 6.
     """
+    require_instance("bel", bel, Gaussian)
+    gate = require_number("gate", gate, above=0.0)
     z, H = require_finite("z", z), require_finite("H", H)
     Sigma_z = require_finite("Sigma_z", Sigma_z)
     n, D = z.size, bel.mean.size

@@ -29,7 +29,9 @@ from pfkit.errors import (
     ShapeError,
     require_count,
     require_finite,
+    require_number,
     require_positive,
+    require_rng,
 )
 from pfkit.filters import Info, predict, select, update
 from pfkit.motion import MotionModel
@@ -72,9 +74,9 @@ def kld_bound(
     k = require_finite("k", k)
     if (k < 1).any() or (k != np.floor(k)).any():
         raise ParameterError(f"k must be whole numbers >= 1, got {k}")
-    require_positive("epsilon", epsilon)
-    delta = float(require_finite("delta", delta))
-    if not 0 < delta < 1:
+    epsilon = require_number("epsilon", epsilon, above=0.0)
+    delta = require_number("delta", delta, above=0.0)
+    if delta >= 1:
         raise ParameterError(f"delta must be in (0, 1), got {delta}")
     quantile = NormalDist().inv_cdf(1 - delta)
     more = np.maximum(k - 1, 1)
@@ -175,7 +177,9 @@ def kld_step(
     if z is None or np.size(z) == 0:
         moved, ancestors = predict(bel, u, motion, rng), np.arange(bel.M, dtype=np.int64)
         return moved, Info(np.float64(0.0), moved.ess, np.False_, ancestors)
-    drawn = rng.permutation(multinomial(bel.w, rng, require_count("most", most, least)))
+    require_rng(rng)
+    require_count("most", most, require_count("least", least))
+    drawn = rng.permutation(multinomial(bel.w, rng, most))
     moved = predict(select(bel, drawn), u, motion, rng)
     n = kld_count(moved.state, cell, epsilon, delta, least)
     ancestors = drawn[:n]

@@ -35,8 +35,16 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ShapeError, require_count, require_positive
-from pfkit.particles import Particles
+from pfkit.errors import (
+    ShapeError,
+    require_callable,
+    require_count,
+    require_finite,
+    require_instance,
+    require_number,
+    require_shape,
+)
+from pfkit.particles import Particles, require_particles
 from pfkit.posegrid import PoseGrid
 
 Array = NDArray[np.float64]
@@ -81,10 +89,18 @@ def equal_mass_boxes(p: Array, bins: int) -> NDArray[np.int64]:
     -------
     int64 array (n_x, n_y, n_theta), the number of each cell's box
 
+    Raises
+    ------
+    ShapeError, ParameterError
+        If p is not a block of masses, or bins is not a whole number >= 1.
+
     Notes
     -----
     O(N log bins) for N cells: each level of cuts looks at each cell once.
     """
+    p = require_finite("p", p)
+    if p.ndim != 3 or (p < 0).any() or not p.any():
+        raise ShapeError(f"p must be a block (n_x, n_y, n_theta) of masses, got shape {p.shape}")
     label = np.zeros(p.shape, dtype=np.int64)
     whole = tuple(slice(0, n) for n in p.shape)
     heap = [(-float(p.sum()), 0, whole)]
@@ -155,8 +171,8 @@ def kl_divergence(bel: Particles, grid: PoseGrid, bins: int = 64) -> Divergence:
 
     Raises
     ------
-    ShapeError
-        If the particles are not poses.
+    ShapeError, ParameterError
+        If the particles are not poses, or an argument is not what it should be.
 
     Notes
     -----
@@ -164,7 +180,8 @@ def kl_divergence(bel: Particles, grid: PoseGrid, bins: int = 64) -> Divergence:
     q = p, counting alone makes the log ratios vary by (C_+ - 1) / n; what is left then is the
     variance of a chi-square, the last term.
     """
-    if bel.state.shape[0] != 3:
+    require_instance("grid", grid, PoseGrid)
+    if require_particles(bel).state.shape[0] != 3:
         raise ShapeError(f"the grid holds poses, the particles have {bel.state.shape[0]} rows")
     box = equal_mass_boxes(grid.p, bins).ravel()
     p = _shares(box, grid.p)
@@ -198,9 +215,11 @@ def refinement(coarse: PoseGrid, fine: PoseGrid, bins: int = 64) -> float:
 
     Raises
     ------
-    ShapeError
+    ShapeError, ParameterError
         If the fine grid is not the coarse one with halved cells.
     """
+    require_instance("coarse", coarse, PoseGrid)
+    require_instance("fine", fine, PoseGrid)
     shape = coarse.p.shape
     if fine.p.shape != tuple(2 * n for n in shape) or fine.bounds != coarse.bounds:
         raise ShapeError(
@@ -243,8 +262,15 @@ def converged_grid(
     -----
     GridNotConverged
         If the last halving moved the answer by more than `tolerance`.
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If tolerance or shape cannot be used, or `run` returns something else than a grid.
     """
-    require_positive("tolerance", tolerance)
+    require_number("tolerance", tolerance, above=0.0)
+    require_callable("run", run)
+    shape = require_shape("shape", shape)  # type: ignore[assignment]
     grid, moved = run(shape), math.inf
     for _ in range(require_count("doublings", doublings)):
         shape = tuple(2 * n for n in shape)  # type: ignore[assignment]

@@ -25,6 +25,7 @@ from pfkit.errors import (
     ShapeError,
     require_components,
     require_finite,
+    require_fraction,
     require_positive,
     require_shape,
 )
@@ -45,9 +46,14 @@ class PoseGrid:
     p : array (n_x, n_y, n_theta), probabilities that sum to one
     bounds : (x_min, x_max, y_min, y_max), metres
         What the cells cover; headings always cover the circle, from -pi on.
-    lost : float
+    lost : float in [0, 1]
         Share of mass that has left the bounds so far. It is dropped and the rest scaled up: the
         robot is taken to stay inside, so choose bounds with a margin and keep an eye on it.
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If p is not a block of probabilities that sum to one, or the box is empty.
     """
 
     p: Array
@@ -55,11 +61,20 @@ class PoseGrid:
     lost: float = 0.0
 
     def __post_init__(self) -> None:
-        if self.p.ndim != 3 or self.p.size == 0:
-            raise ShapeError(f"p must have shape (n_x, n_y, n_theta), got {self.p.shape}")
-        x0, x1, y0, y1 = self.bounds
-        if not (x0 < x1 and y0 < y1):
-            raise ParameterError(f"bounds must be (x_min, x_max, y_min, y_max), got {self.bounds}")
+        p, bounds = require_finite("p", self.p), require_finite("bounds", self.bounds)
+        if p.ndim != 3 or p.size == 0:
+            raise ShapeError(f"p must have shape (n_x, n_y, n_theta), got {p.shape}")
+        if (p < 0).any() or not np.isclose(p.sum(), 1.0):
+            raise ParameterError(
+                f"p must be >= 0 and sum to 1, got sum {p.sum():.6g}; divide it by its sum"
+            )
+        if bounds.shape != (4,) or not (bounds[0] < bounds[1] and bounds[2] < bounds[3]):
+            raise ParameterError(
+                f"bounds must be (x_min, x_max, y_min, y_max), got {self.bounds!r:.80}"
+            )
+        require_fraction("lost", self.lost)
+        object.__setattr__(self, "p", p)
+        object.__setattr__(self, "bounds", tuple(bounds.tolist()))
 
     @property
     def low(self) -> Array:
@@ -114,9 +129,16 @@ def uniform_grid(shape: tuple[int, int, int], bounds: Bounds) -> PoseGrid:
     Returns
     -------
     PoseGrid
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If the shape is not three whole numbers >= 1, or the box is empty.
     """
-    shape = _shape(shape)
-    return PoseGrid(np.full(shape, 1 / math.prod(shape)), _bounds(bounds))
+    cells = require_shape("shape", shape)
+    if len(cells) != 3:
+        raise ShapeError(f"shape must be (n_x, n_y, n_theta), got {shape!r:.60}")
+    return PoseGrid(np.full(cells, 1 / math.prod(cells)), bounds)
 
 
 def gaussian_grid(
@@ -139,6 +161,11 @@ def gaussian_grid(
     Returns
     -------
     PoseGrid
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If a shape is wrong, the box is empty, or a sigma is not positive.
     """
     grid = uniform_grid(shape, bounds)
     mean = require_finite("mean", require_components("mean", mean, 3))
@@ -149,17 +176,3 @@ def gaussian_grid(
     for error, sd in zip(errors, sigma, strict=True):
         log_p += log_gaussian(error, sd)
     return replace(grid, p=np.exp(normalise(log_p.ravel())[0]).reshape(grid.p.shape))
-
-
-def _shape(shape: tuple[int, int, int]) -> tuple[int, int, int]:
-    cells = require_shape("shape", tuple(shape))
-    if len(cells) != 3:
-        raise ShapeError(f"shape must be (n_x, n_y, n_theta), got {shape}")
-    return cells
-
-
-def _bounds(bounds: Bounds) -> Bounds:
-    values = require_finite("bounds", bounds)
-    if values.shape != (4,):
-        raise ShapeError(f"bounds must be (x_min, x_max, y_min, y_max), got {bounds!r:.80}")
-    return tuple(values.tolist())

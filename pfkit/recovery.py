@@ -33,9 +33,12 @@ from pfkit.errors import (
     DataError,
     ParameterError,
     Shape,
+    ShapeError,
+    require_callable,
     require_components,
     require_count,
     require_finite,
+    require_instance,
     require_method,
     require_rng,
     require_shape,
@@ -127,12 +130,15 @@ def inject(
 
     Raises
     ------
-    ParameterError
-        If the share is not in [0, 1].
+    ParameterError, ShapeError
+        If the share is not in [0, 1], or not one number or one per filter.
     """
     require_particles(bel)
     require_rng(rng)
+    require_callable("draw", draw)
     share = require_finite("share", share)
+    if share.shape not in ((), bel.log_w.shape[:-1]):
+        raise ShapeError(f"share must be one number or one per filter, got shape {share.shape}")
     if not ((share >= 0) & (share <= 1)).all():
         raise ParameterError(f"share must be in [0, 1], got {share}")
     new = rng.random(bel.log_w.shape) < share[..., None]
@@ -229,9 +235,10 @@ def augmented_step(
     -----
     Source: Probabilistic Robotics, Table 8.3. Like the table it resamples at each measurement.
     """
+    require_instance("memory", memory, Memory)
     if world is not None:
         require_method("world", world, "sample_poses")
-    K = 0 if z is None or np.size(z) == 0 else np.shape(z)[1]
+    K = 0 if z is None or np.size(z) == 0 else np.atleast_2d(z).shape[1]
     bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold=1.0)
     if K == 0:
         return bel, memory, info

@@ -62,7 +62,8 @@ def roughen(
     """
     where = _fresh(bel, where)
     require_rng(rng)
-    require_non_negative("K", K)
+    if require_non_negative("K", K).ndim:
+        raise ShapeError(f"K must be one number, got shape {np.shape(K)}")
     deviation = _deviation(bel)
     extent = deviation.max(axis=-1) - deviation.min(axis=-1)
     scale = K * extent[..., None] * bel.M ** (-1 / len(bel.state))

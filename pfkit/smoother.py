@@ -20,6 +20,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
+from pfkit.errors import require_instance
 from pfkit.gaussian import Transform, gaussian_predict, gaussian_update, linearise
 from pfkit.kalman import Gaussian, angles_of, wrap_rows
 from pfkit.log import Log
@@ -86,7 +87,15 @@ def run_gaussian(
     Returns
     -------
     GaussianHistory
+
+    Raises
+    ------
+    ParameterError, ShapeError, DataError
+        As `gaussian_predict` and `gaussian_update`.
     """
+    require_instance("log", log, Log)
+    require_instance("bel", bel, Gaussian)
+    require_instance("sensor", sensor, Sensor)
     T, D = len(log), bel.mean.size
     estimate, predicted = np.empty((D, T)), np.empty((D, T))
     spread, predicted_spread, cross = (np.empty((D, D, T)) for _ in range(3))
@@ -123,11 +132,17 @@ def rts_smooth(history: GaussianHistory) -> GaussianHistory:
     -------
     GaussianHistory with smoothed `estimate` and `covariance`
 
+    Raises
+    ------
+    ParameterError
+        If `history` is not that of a Gaussian filter.
+
     Notes
     -----
     Source: H. E. Rauch, F. Tung and C. T. Striebel, AIAA Journal 3 (1965). A state without any
     uncertainty in some direction is handled by the pseudo-inverse: nothing to correct there.
     """
+    require_instance("history", history, GaussianHistory)
     estimate, spread = history.estimate.copy(), history.covariance.copy()
     angles = angles_of(estimate)
     for k in range(len(history.t) - 2, -1, -1):

@@ -39,7 +39,7 @@ def test_gaussian_grid_has_its_moments():
     [
         (lambda: pf.uniform_grid((4, 4), BOUNDS), pf.ShapeError),
         (lambda: pf.uniform_grid((4, 4, 0), BOUNDS), pf.ParameterError),
-        (lambda: pf.uniform_grid((4, 4, 4), (0, 1, 2)), pf.ShapeError),
+        (lambda: pf.uniform_grid((4, 4, 4), (0, 1, 2)), pf.ParameterError),
         (lambda: pf.uniform_grid((4, 4, 4), (1, 0, 0, 1)), pf.ParameterError),
         (lambda: pf.uniform_grid((4, 4, 4), (0, np.nan, 0, 1)), pf.ParameterError),
         (lambda: pf.PoseGrid(np.ones((3, 3)), BOUNDS), pf.ShapeError),
