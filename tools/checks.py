@@ -81,7 +81,7 @@ def run(stage: Stage) -> tuple[bool, float]:
     """Run one check; return whether it passed and how long it took."""
     say(f"{stage.name}: {stage.shows}")
     start = time.monotonic()
-    environment = {**os.environ, "MPLBACKEND": "agg", "PYTHONHASHSEED": "0"}
+    environment = {**os.environ, "MPLBACKEND": "agg", "PYTHONHASHSEED": "0", "PFKIT_WIDGETS": "off"}
     if stage.name == "notebooks":
         environment["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
     passed = all(

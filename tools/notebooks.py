@@ -29,7 +29,11 @@ from stamps import ROOT
 FOLDERS = ("book", "notebooks", "notebooks/labs")
 KERNEL = {"display_name": "Python 3", "language": "python", "name": "python3"}
 LANGUAGE = {"name": "python", "pygments_lexer": "ipython3", "file_extension": ".py"}
-QUIET = {"MPLBACKEND": "module://matplotlib_inline.backend_inline", "PYTHONHASHSEED": "0"}
+QUIET = {
+    "MPLBACKEND": "module://matplotlib_inline.backend_inline",
+    "PYTHONHASHSEED": "0",
+    "PFKIT_WIDGETS": "off",  # explorables leave a line of text in a stored notebook, no widget
+}
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
 COLOURS = 128
 SHORTEST_ALT = 20  # characters: less cannot describe a figure

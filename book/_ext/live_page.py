@@ -13,7 +13,9 @@ without content the scene's own missions appear::
     3. Follow the family tree ...
     ```
 
-`panel`, `seed` and `alt` may be left out; the scene knows good ones. A recorded run and a still are
+`panel`, `seed` and `alt` may be left out; the scene knows good ones. The scene can tell when its
+own missions are done and ticks them off; if your three ask for the same deeds in your own words, in
+the same order, add ``:ticks:``. A recorded run and a still are
 made here, by the scene itself, and kept in .cache/live/runs until pfkit changes. They need neither
 Node nor a network. What computes (Pyodide and so on) comes from tools/live/build.py; if that is not
 there, the build says so and the pages keep recordings and stills.
@@ -70,6 +72,7 @@ class Explorable(SphinxDirective):
         "seed": directives.nonnegative_int,
         "alt": directives.unchanged,
         "name": directives.unchanged,
+        "ticks": directives.flag,
     }
 
     def run(self) -> list[nodes.Node]:
@@ -88,6 +91,7 @@ class Explorable(SphinxDirective):
         )
         used[key] = [name, about["panel"], seed]
         node = explorable(key=key, title=about["title"], alt=alt, ident=ident, size=about["size"])
+        node["ticks"] = int("ticks" in self.options or not self.content)
         self.set_source_info(node)
         self.state.nested_parse(self.content, self.content_offset, node)
         return [node]
@@ -101,15 +105,15 @@ def _pages(env: Any) -> dict[str, dict[str, Any]]:
 
 
 def visit_html(writer: Any, node: explorable) -> None:
-    prefix = writer.builder.get_relative_uri(writer.builder.current_docname, "live/x")
-    prefix = prefix.removesuffix("x.html").removesuffix("x")
+    prefix = writer.builder.get_relative_uri(writer.builder.current_docname, "live")
+    prefix = prefix.removesuffix(".html")
     width, height = node["size"]
     writer.body.append(
         f'<div class="pf-explorable" role="group" id="{escape(node["ident"])}" '
         f'aria-label="{escape(node["title"])}" data-recording="{escape(node["key"])}" '
-        f'data-alt="{escape(node["alt"])}">\n'
+        f'data-ticks="{node["ticks"]}">\n'
         f'<p class="pf-title">{escape(node["title"])}</p>\n'
-        f'<img class="pf-still" src="{prefix}runs/{escape(node["key"])}.svg" width="{width}" '
+        f'<img class="pf-still" src="{prefix}-runs/{escape(node["key"])}.svg" width="{width}" '
         f'height="{height}" alt="{escape(node["alt"])}">\n<div class="pf-missions">\n'
     )
 
@@ -262,7 +266,8 @@ def copy_live(app: Sphinx, error: Exception | None) -> None:
     if not (SITE / "manifest.json").exists():
         logger.info("live parts: python tools/live/build.py has not run or could not finish;")
         logger.info("live parts: the pages keep recorded runs and pictures but cannot compute")
-    runs, folder = target / "runs", CACHE / "runs" / package_hash()
+    runs, folder = target.with_name("live-runs"), CACHE / "runs" / package_hash()
+    shutil.rmtree(runs, ignore_errors=True)
     runs.mkdir(parents=True, exist_ok=True)
     for page in pages:
         for key, (name, panel, seed) in page["runs"].items():

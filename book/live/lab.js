@@ -6,7 +6,7 @@
   "use strict";
 
   const el = PF.el;
-  const SECONDS = 30;
+  const LIMIT = { seconds: 30 }; // visible time after which a cell is stopped
   const BIGGEST = 2e6;
   let lab, python, editors = [], bar, busy = null, predictions = {}, memory = {};
 
@@ -174,7 +174,8 @@
       const index = check ? this.check.index : this.cell.index;
       const cells = JSON.stringify(lab.cells.map((c) => {
         const e = editors.find((x) => x.cell.index === c.index);
-        return { index: c.index, kind: c.kind, source: e ? e.get() : c.source };
+        return { index: c.index, kind: c.kind, item: c.item ?? `cell ${c.index}`,
+          source: e ? e.get() : c.source };
       }));
       this.runButton.disabled = this.checkButton.disabled = true;
       this.stopButton.hidden = false;
@@ -186,19 +187,19 @@
       const clock = setInterval(() => {
         if (!limit) return;
         const left = Math.ceil((limit - performance.now()) / 1000);
-        if (left <= 0) this.stop(`stopped after ${SECONDS} s: does a loop never end?`);
-        else if (left < SECONDS - 1) this.note.textContent = `Running. It is stopped in ${left} s.`;
+        if (left <= 0) this.stop(`stopped after ${LIMIT.seconds} s: does a loop never end?`);
+        else if (left < LIMIT.seconds - 1) this.note.textContent = `Running. It is stopped in ${left} s.`;
       }, 250);
       try {
         await python.start();
         if (!booted || !python.told) await restorePredictions();
         this.note.textContent = "Running.";
-        limit = performance.now() + 1000 * SECONDS;
+        limit = performance.now() + 1000 * LIMIT.seconds;
         const report = JSON.parse(await python.ask({ do: "cell", cells, index }));
         const seconds = ((performance.now() - began) / 1000).toFixed(1);
         this.show(report, check);
         this.note.textContent = (report.error ? "An error." : check ? "Checked." : "Ran.")
-          + ` ${seconds} s.` + (report.before.length ? ` Ran ${report.before.length} cells above first.` : "");
+          + ` ${seconds} s.` + (report.before.length ? ` Ran ${report.before.length} cell${report.before.length > 1 ? "s" : ""} above first.` : "");
         await keepPredictions();
       } catch (error) {
         this.stopped = this.stopped || String(error.message || error);
@@ -286,7 +287,7 @@
       for (const e of editors) e.editor.theme(PF.isDark(e.root));
     }).observe(document.documentElement, { attributes: true, attributeFilter: ["data-theme"] });
     addEventListener("pagehide", () => editors.forEach((e) => e.save()));
-    PF.lab = { editors, exportAnswers, importAnswers, python };
+    PF.lab = { editors, exportAnswers, importAnswers, python, limit: LIMIT };
   }
   start();
 })((globalThis.PF = globalThis.PF || {}));

@@ -132,12 +132,16 @@
 
   async function upgrade(root, k) {
     const key = root.dataset.recording;
-    await PF.loadScript(`runs/${key}.js`);
+    try {
+      await PF.loadScript(`../live-runs/${key}.js`);
+    } catch {
+      return; // the still stays
+    }
     const recording = window.pfRecordings[key];
     const explorable = new PF.Explorable(root, {
       about: recording.about, seed: recording.about.seed, values: recording.values, recording,
       key: "s" + k, id: root.id, link: true, engine,
-      missions: root.querySelector(".pf-missions"),
+      missions: root.querySelector(".pf-missions"), ticks: root.dataset.ticks === "1",
     });
     root.pfExplorable = explorable;
     const state = stateFromAddress();

@@ -212,7 +212,7 @@ class Banana(Scene):
         }
 
     def draw(self, pen: Pen) -> None:
-        span = {"straight": (-0.6, 9.4, -3, 3), "arc": (-2.6, 5.2, -0.5, 5.2)}.get(
+        span = {"straight": (-0.6, 9.4, -3, 3), "arc": (-3.2, 6.4, -0.8, 5.0)}.get(
             self.values["route"], (-0.8, 6.2, -1.2, 4.6)
         )
         pen.view((0.01, 0.02, 0.98, 0.96), span[:2], span[2:], equal=True)
@@ -220,11 +220,11 @@ class Banana(Scene):
         for step in range(0, self.now, 8):
             pen.points("grid", *self.mine[step, :2], size=2)
         x, y, _ = self.theirs[self.now]
-        pen.symbols("wall", "circle", x, y, size=6)
+        pen.points("wall", x, y, size=5)
         pen.quills("particle", *self.mine[self.now], length=8, size=4)
         pen.robots("truth", *self.mean[self.now], radius=0.14)
         left, top = span[0] + 0.1, span[3] - 0.2
-        pen.symbols("wall", "circle", left, top, size=8)
+        pen.points("wall", left, top, size=6)
         pen.text("ink", left + 0.15, top, "hidden robot", size=12)
         pen.points("particle", left, top - 0.4, size=6)
         pen.text("ink", left + 0.15, top - 0.4, "yours, with headings", size=12)

@@ -134,7 +134,8 @@ class Cells:
         Parameters
         ----------
         cells : str
-            JSON list of {"index", "source", "kind"}: all code cells, answers as they stand.
+            JSON list of {"index", "source", "kind", "item"}: all code cells, with the answers as
+            they stand; item is unique for cells that belong to no question.
         index : int
         """
         table = {c["index"]: c for c in json.loads(cells)}
@@ -143,9 +144,12 @@ class Cells:
             if self.ran.get(i) != table[i]["source"]:
                 before.append(i)
                 report = self._run_one(i, table[i]["source"])
-                if report["error"] and table[i]["kind"] == "code":
-                    report["error"] = f"in a cell above: {report['error']}"
+                if not report["error"]:
+                    continue
+                if table[i].get("item") == table[index].get("item") or table[i]["kind"] == "code":
                     return json.dumps({**report, "before": before})
+                for name in bound_and_used(table[i]["source"])[0]:
+                    self.space[name] = ...  # another answer that fails counts as unanswered
         return json.dumps({**self._run_one(index, table[index]["source"]), "before": before})
 
     def _run_one(self, index: int, source: str) -> dict[str, Any]:

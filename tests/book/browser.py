@@ -28,7 +28,7 @@ FLAGS = (
 WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 SETTLE = 400  # ms: the theme waits before it reacts to a new width
 LARGEST_PAGE = 400_000  # bytes beyond what all pages share
-SHARED = "/_static/"
+SHARED = ("/_static/", "/live/")
 FORWARDS = 'http-equiv="refresh"'
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
@@ -104,7 +104,7 @@ class Visit:
     def _response(self, response: Any) -> None:
         if response.status >= 400:
             self.complaints.append(f"{response.status}: {response.url[-100:]}")
-        if response.url.startswith("http") and SHARED not in response.url:
+        if response.url.startswith("http") and not any(part in response.url for part in SHARED):
             self.own_bytes += int(response.headers.get("content-length") or 0)
 
 

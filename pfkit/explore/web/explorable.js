@@ -190,6 +190,7 @@
           const grid = log && raw > 20 * c.step ? Math.pow(10, Math.floor(Math.log10(raw)) - 1) : c.step;
           return Math.min(c.hi, Math.max(c.lo, +(Math.round(raw / grid) * grid).toFixed(8)));
         };
+        const decimals = Math.max(0, Math.ceil(-Math.log10(c.step) - 1e-9));
         const shown = el("output", { for: id });
         const slider = el("input", { type: "range", id, min: log ? 0 : c.lo, max: log ? 1000 : c.hi,
           step: log ? 1 : c.step, "aria-describedby": described, oninput: () => {
@@ -198,7 +199,7 @@
             this.change(c.name, v);
           } });
         const label = (v) => {
-          shown.textContent = tidy(+v.toPrecision(4)) + (c.unit ? "\u202f" + c.unit : "");
+          shown.textContent = (log ? tidy(v) : v.toFixed(decimals).replace("-", "\u2212")) + (c.unit ? "\u202f" + c.unit : "");
           slider.setAttribute("aria-valuetext", shown.textContent);
         };
         slider.value = to(value);
