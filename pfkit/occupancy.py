@@ -126,7 +126,7 @@ class OccupancyGrid:
         return inside & self.free[np.clip(j, 0, rows - 1), np.clip(i, 0, columns - 1)]
 
     def sample_poses(self, shape: Shape, rng: np.random.Generator) -> Array:
-        """Draw poses uniformly over the free cells, heading uniform on the circle: (3, *shape).
+        """Draw poses uniformly over the free cells, heading uniform on the circle: (3, ...).
 
         Raises
         ------

@@ -120,7 +120,7 @@ def inject(
     ----------
     bel : Particles, best just resampled: a new particle gets the weight of the one it replaces
     share : float or (B,), in [0, 1]
-    draw : function (shape, rng) -> states (D, *shape), for example ``world.sample_poses``
+    draw : function (shape, rng) -> states (D, ...), for example ``world.sample_poses``
     rng : numpy.random.Generator
 
     Returns

@@ -72,7 +72,7 @@ class one_by_one:
 
     Parameters
     ----------
-    function : function (rng, **setting) -> mapping from names to numbers
+    function : function (rng, ``**setting``) -> mapping from names to numbers
         Each run gets a stream of its own.
     """
 
@@ -99,7 +99,7 @@ def run(
 
     Parameters
     ----------
-    experiment : function (rng, B, **setting) -> mapping from names to arrays (B,)
+    experiment : function (rng, B, ``**setting``) -> mapping from names to arrays (B,)
         For an executor with processes it must be importable: a function of a module.
     settings : iterable of mappings with the same keys, e.g. of `grid`
     runs : int, per setting
