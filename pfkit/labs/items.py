@@ -124,9 +124,13 @@ class Item:
         return mistake.when is not None and bool(mistake.when(evidence))
 
 
+def _is_blank(answer: Any) -> bool:
+    return isinstance(answer, str) and not answer.strip(". \n")
+
+
 def is_unanswered(answer: Any) -> bool:
     """Is this still the stub: ``...``, nothing, or a function whose body is only ``...``?"""
-    if answer is None or answer is Ellipsis or (isinstance(answer, str) and not answer.strip()):
+    if answer is None or answer is Ellipsis or _is_blank(answer):
         return True
     if isinstance(answer, tuple | list) and 0 < len(answer) <= 20:
         return all(is_unanswered(part) for part in answer)

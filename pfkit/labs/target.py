@@ -30,19 +30,23 @@ STARTS = {"fixed": (440.0, 400.0, 0.0), "line": (27.0, 60.0, 0.55), "circle": (3
 NOISE = {"low": (1.0, 0.0), "high": (20.0, 0.0), "outliers": (1.0, 0.5)}  # sd in px, share
 
 
-def target_log(path: str = "circle", noise: str = "low", seed: int = 4) -> pf.Log:
-    """Simulate the film.
+def target_log(
+    path: str = "circle", noise: str = "low", seed: int = 4, runs: int | None = None
+) -> pf.Log:
+    """Simulate the film, or ``runs`` films of one target with fresh noise in each.
 
     Parameters
     ----------
     path : "fixed", "line" or "circle"
     noise : "low" (sd 1 px), "high" (sd 20 px) or "outliers" (sd 1 px, half of them false)
     seed : int
+    runs : int, optional
+        Number of films.
 
     Returns
     -------
     Log
-        Per frame u = (v, omega, dt) with dt = 1 frame and z (2, 1) in px;
+        Per frame u = (v, omega, dt) with dt = 1 frame and z (2, 1), or (2, 1, runs, 1), in px;
         ``truth`` (3, 688) in px and rad, ``outlier`` the labels.
     """
     rng = np.random.default_rng(seed)
@@ -54,17 +58,20 @@ def target_log(path: str = "circle", noise: str = "low", seed: int = 4) -> pf.Lo
     for k in range(FRAMES):
         state = model.mean(state, u)
         truth[:, k] = state[:, 0]
-    z = truth[:2] + sigma * rng.standard_normal((2, FRAMES))
-    outlier = rng.random(FRAMES) < share
-    z[:, outlier] = np.array([[WIDTH], [HEIGHT]]) * rng.random((2, outlier.sum()))
+    shape = (FRAMES, 1) if runs is None else (FRAMES, 1, runs, 1)
+    honest = truth[:2].reshape(2, FRAMES, *(1,) * (len(shape) - 1))
+    z = honest + sigma * rng.standard_normal((2, *shape))
+    outlier = rng.random(shape) < share
+    image = np.array([WIDTH, HEIGHT]).reshape(2, *(1,) * len(shape))
+    z = np.where(outlier, image * rng.random((2, *shape)), z)
     return pf.Log(
         t=np.arange(1.0, FRAMES + 1),
         u=np.repeat(u[:, None], FRAMES, axis=1),
-        z=list(z.T[:, :, None]),
+        z=list(np.moveaxis(z, 1, 0)),
         truth=truth,
         start=np.array(STARTS[path]),
         source=f"target, {path}, {noise} noise",
-        outlier=list(outlier[:, None]),
+        outlier=list(outlier),
     )
 
 

@@ -1,0 +1,471 @@
+"""Lab 4, part 1: what the filter believes about its noise, and about motion. Q9 to Q12."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import pfkit as pf
+from pfkit.labs.items import Choice, Experiment, Misconception, Prediction, Property
+from pfkit.labs.lab import Question
+from pfkit.labs.target import around, target_log, track
+
+FILM, CIRCLE = target_log("fixed", "low"), target_log("circle", "high")
+HOME = FILM.start[:2]
+VARIANCES = (1e-4, 1e-2, 1.0, 100.0, 1e4)
+
+
+def _per_run(found, runs):
+    found = np.asarray(found, dtype=float)
+    if found.shape != (runs,):
+        raise ValueError(f"expected one number per run, shape ({runs},), got {found.shape}")
+    return found
+
+
+def model_of(name, sigma, sigma_theta=0.05):
+    """One of the three motion models by name."""
+    if name == "fixed":
+        return pf.FixedTarget(sigma)
+    return {"line": pf.LineTarget, "circle": pf.CircleTarget}[name](sigma, sigma_theta)
+
+
+def start_of(name, log, shape, rng):
+    """Particles around the true start (sd 20 px), with a heading if the model has one."""
+    return around(log.start[: 2 if name == "fixed" else 3], shape, rng, sigma=20.0)
+
+
+# -- Q9: modelled sensor noise ---------------------------------------------------------------
+
+
+def sensor_sweep(variance, rng, runs):
+    """Mean error of frames 50 to 200, one per run, if the sensor is believed to have it."""
+    bel = around(HOME, (runs, 300), rng, sigma=20.0)
+    motion, sensor = pf.FixedTarget(1.4), pf.Position(np.sqrt(variance))
+    return track(FILM[:200], bel, motion, sensor, rng).error[50:].mean(axis=0)
+
+
+def linear_weights(variance, rng, runs):
+    """The same with weights in the linear domain; if all are zero, all count the same."""
+    state = np.stack([640 * rng.random((runs, 300)), 480 * rng.random((runs, 300))])
+    errors = []
+    for k in range(200):
+        state = state + 1.4 * rng.standard_normal(state.shape)
+        nu = FILM.z[k].reshape(2, 1, 1) - state
+        with np.errstate(under="ignore"):
+            w = np.exp(-0.5 * (nu**2).sum(axis=0) / variance)
+        w[w.sum(axis=1) == 0] = 1.0
+        ancestors = pf.systematic(w / w.sum(axis=1, keepdims=True), rng)
+        state = np.take_along_axis(state, ancestors[None], axis=-1)
+        errors.append(np.hypot(*(state.mean(axis=-1) - HOME[:, None])))
+    return np.mean(errors[50:], axis=0)
+
+
+def _sensor(f, rng, runs):
+    return np.stack([_per_run(f(v, rng, runs), runs) for v in VARIANCES], axis=1)
+
+
+def _column(x):
+    return np.median(x, axis=0)
+
+
+Q9 = Question(
+    "q9",
+    "Modelled sensor noise",
+    (
+        Prediction(
+            id="q9a",
+            title="True variance 1 px^2. Which believed variance gives the smallest error?",
+            key="d",
+            options={
+                "a": "0.0001: the surest sensor",
+                "b": "0.01",
+                "c": "1: the true one",
+                "d": "100: far too large",
+            },
+        ),
+        Experiment(
+            id="q9b",
+            after="q9a",
+            title="Error against the believed sensor variance",
+            points=2,
+            claim="understating by 100 or more copies the measurement (1.0 to 1.5 px); the smallest "
+            "of the five errors is at 100 px^2, below .6 px; at 10,000 it rises again",
+            test="medians over runs",
+            runs=8,
+            margin="",
+            measure=_sensor,
+            reference=sensor_sweep,
+            hints=(
+                "One number per run: the mean error of frames 50 to 200.",
+                "pf.Position wants a standard deviation; you get a variance.",
+                "pf.Position(np.sqrt(variance)).",
+            ),
+            properties=(
+                Property(
+                    "at .0001 and .01 the filter copies the measurement: 1.0 to 1.5 px",
+                    lambda x: (
+                        bool(((_column(x)[:2] > 1.0) & (_column(x)[:2] < 1.5)).all())
+                        or f"{_column(x)[:2].round(2)} px"
+                    ),
+                ),
+                Property(
+                    "at 100 the error is the smallest, below .6 px",
+                    lambda x: (
+                        (_column(x).argmin() == 3 and _column(x)[3] < 0.6)
+                        or f"{_column(x).round(2)} px"
+                    ),
+                ),
+                Property(
+                    "at 10,000 it is at least .15 px above that",
+                    lambda x: _column(x)[4] > _column(x)[3] + 0.15 or f"{_column(x).round(2)} px",
+                ),
+            ),
+            misconceptions=(
+                Misconception(
+                    "variance-as-sd",
+                    "passes the variance where a standard deviation is wanted",
+                    (
+                        "For which of the five variances would that make no difference?",
+                        "At 100 px^2 the sensor of your filter has an sd of 100 px.",
+                        "pf.Position(np.sqrt(variance)).",
+                    ),
+                    lambda v, rng, runs: sensor_sweep(v**2, rng, runs),
+                    lambda x: _column(x)[3] > 0.6 and _column(x)[0] < 5,
+                ),
+                Misconception(
+                    "linear-weights",
+                    "loses all weights to underflow and then resamples at random",
+                    (
+                        "Your errors at small variances are tens of pixels. What is exp(-1000)?",
+                        "All weights were 0, and 'all zero, so all equal' forgets the measurement.",
+                        "Work with log-weights, as pf.update does.",
+                    ),
+                    lambda v, rng, runs: linear_weights(v, rng, runs),
+                    lambda x: _column(x)[0] > 5,
+                ),
+            ),
+        ),
+        Choice(
+            id="q9c",
+            title="With weights exp(-d^2/2 sigma^2), all 0 at sigma^2 = .0001: what failed?",
+            key="b",
+            options={
+                "a": "Statistics: a sensor that is too sure makes any filter diverge",
+                "b": "Arithmetic: the weights underflowed; with log-weights the error is 1.3 px",
+                "c": "The motion model: it needs more noise",
+                "d": "Resampling: it should have been systematic",
+            },
+            feedback={
+                "a": "With log-weights the same sure sensor just copies the measurement.",
+                "b": "Yes: the famous failure is underflow; overconfidence alone costs far less.",
+                "c": "The motion model was the same in both filters.",
+                "d": "No scheme can choose well between weights that are all 0.",
+            },
+        ),
+    ),
+)
+
+# -- Q10: modelled process noise -------------------------------------------------------------
+
+
+def motion_sweep(variance, rng, runs):
+    """Mean error of all 400 frames, and of the last 100: two rows, one number per run."""
+    bel = around(HOME, (runs, 200), rng, sigma=60.0)
+    motion, sensor = pf.FixedTarget(np.sqrt(variance)), pf.Position(5.0)
+    error = track(FILM[:400], bel, motion, sensor, rng).error
+    return np.array([error.mean(axis=0), error[-100:].mean(axis=0)])
+
+
+def _motion(f, rng, runs):
+    pairs = [np.asarray(f(v, rng, runs), dtype=float) for v in VARIANCES]
+    if any(p.shape != (2, runs) for p in pairs):
+        raise ValueError(f"expected two rows of {runs} numbers, got shape {pairs[0].shape}")
+    return np.stack(pairs, axis=2).transpose(1, 0, 2)  # (runs, metric, variance)
+
+
+Q10 = Question(
+    "q10",
+    "Modelled process noise",
+    (
+        Prediction(
+            id="q10a",
+            title="Which process variance wins, by the mean of all frames (A) and of the last "
+            "hundred (B)?",
+            key="c",
+            options={
+                "a": "The smallest wins both: the target does stand still",
+                "b": "1 px^2 wins both",
+                "c": "1 px^2 wins A, .01 px^2 wins B",
+                "d": "100 px^2 wins both",
+            },
+        ),
+        Experiment(
+            id="q10b",
+            after="q10a",
+            title="Error against the modelled process variance",
+            points=2,
+            claim="of .0001, .01, 1, 100, 10,000 px^2 the mean over all frames is best at 1, the "
+            "mean of the last hundred at .01",
+            test="smallest median over runs",
+            runs=10,
+            margin="",
+            measure=_motion,
+            reference=motion_sweep,
+            hints=(
+                "Two rows: error.mean(axis=0) and error[-100:].mean(axis=0).",
+                "pf.FixedTarget wants a standard deviation; you get a variance.",
+                "pf.FixedTarget(np.sqrt(variance)).",
+            ),
+            properties=(
+                Property(
+                    "all frames: the best is 1 px^2",
+                    lambda x: _column(x[:, 0]).argmin() == 2 or f"{_column(x[:, 0]).round(2)} px",
+                ),
+                Property(
+                    "last hundred frames: the best is .01 px^2",
+                    lambda x: _column(x[:, 1]).argmin() == 1 or f"{_column(x[:, 1]).round(2)} px",
+                ),
+            ),
+            misconceptions=(
+                Misconception(
+                    "variance-as-sd",
+                    "passes the variance where a standard deviation is wanted",
+                    (
+                        "For which of the five variances would that make no difference?",
+                        "At 100 px^2 your particles jump 100 px per frame.",
+                        "pf.FixedTarget(np.sqrt(variance)).",
+                    ),
+                    lambda v, rng, runs: motion_sweep(v**2, rng, runs),
+                    lambda x: _column(x[:, 1])[3] > 3,
+                ),
+                Misconception(
+                    "rows-swapped",
+                    "returns the rows in the other order",
+                    (
+                        "Which row holds the start of the film, where errors are large?",
+                        "All frames first, then the last hundred.",
+                        "np.array([error.mean(axis=0), error[-100:].mean(axis=0)]).",
+                    ),
+                    lambda v, rng, runs: motion_sweep(v, rng, runs)[::-1],
+                    lambda x: _column(x[:, 0]).argmin() == 1 and _column(x[:, 1]).argmin() == 2,
+                ),
+            ),
+        ),
+    ),
+)
+
+# -- Q11: motion model and process noise -----------------------------------------------------
+
+RATIOS = (0.0025, 0.01, 0.09, 0.25)
+MODELS = ("fixed", "line", "circle")
+
+
+def ratio_sweep(model, ratio, rng, runs):
+    """Mean error of frames 50 to 250 on the circle; process variance = ratio * 400 px^2."""
+    bel = start_of(model, CIRCLE, (runs, 200), rng)
+    motion = model_of(model, np.sqrt(400 * ratio))
+    return track(CIRCLE[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+
+
+def _ratios(f, rng, runs):
+    rows = [[_per_run(f(m, r, rng, runs), runs) for r in RATIOS] for m in MODELS]
+    return np.array(rows).transpose(2, 0, 1)  # (runs, model, ratio)
+
+
+def _best(x):
+    return [RATIOS[k] for k in np.median(x, axis=0).argmin(axis=1)]
+
+
+Q11 = Question(
+    "q11",
+    "Motion model and process noise",
+    (
+        Prediction(
+            id="q11a",
+            title="On the circling target: which model wants the largest process noise?",
+            key="a",
+            options={
+                "a": "Fixed, the most wrong",
+                "b": "Line",
+                "c": "Circle, the most flexible",
+                "d": "All want the same: the noise is a property of the target",
+            },
+        ),
+        Experiment(
+            id="q11b",
+            after="q11a",
+            title="Best ratio of process to sensor variance, per model",
+            points=2,
+            claim="of .0025, .01, .09, .25 the fixed model does best at .09, line and circle at "
+            ".01 or less",
+            test="smallest median over runs, per model",
+            runs=6,
+            margin="",
+            measure=_ratios,
+            reference=ratio_sweep,
+            hints=(
+                "One number per run: the mean error of frames 50 to 250.",
+                "lab.model_of(name, sigma) and lab.start_of(name, log, shape, rng) help.",
+                "sigma = np.sqrt(400 * ratio).",
+            ),
+            properties=(
+                Property(
+                    "fixed does best at .09",
+                    lambda x: _best(x)[0] == 0.09 or f"best at {_best(x)[0]}",
+                ),
+                Property(
+                    "line does best at .01 or less",
+                    lambda x: _best(x)[1] <= 0.01 or f"best at {_best(x)[1]}",
+                ),
+                Property(
+                    "circle does best at .01 or less",
+                    lambda x: _best(x)[2] <= 0.01 or f"best at {_best(x)[2]}",
+                ),
+            ),
+            misconceptions=(
+                Misconception(
+                    "ratio-as-sd",
+                    "takes ratio times 400 as a standard deviation",
+                    (
+                        "How far do your particles jump in one frame at ratio .25?",
+                        "The ratio is one of variances.",
+                        "sigma = np.sqrt(400 * ratio).",
+                    ),
+                    lambda m, r, rng, runs: ratio_sweep(m, 400 * r**2, rng, runs),
+                    lambda x: _best(x)[0] == 0.01 and np.median(x[:, 0, 3]) > 14,
+                ),
+                Misconception(
+                    "one-model",
+                    "does not use its first argument: all models are alike",
+                    (
+                        "Your three rows agree.",
+                        "The name says which motion model to use.",
+                        "lab.model_of(model, sigma).",
+                    ),
+                    lambda m, r, rng, runs: ratio_sweep("fixed", r, rng, runs),
+                    lambda x: len(set(_best(x))) == 1,
+                ),
+            ),
+        ),
+    ),
+)
+
+# -- Q12: precision and number of particles --------------------------------------------------
+
+SIGMA = {"fixed": 6.0, "line": 1.0, "circle": 0.5}
+
+
+def error_with(model, M, rng, runs):
+    """Mean error of frames 50 to 250 on the circle, each model with noise that suits it."""
+    bel = start_of(model, CIRCLE, (runs, M), rng)
+    motion = model_of(model, SIGMA[model], 0.01 if model == "circle" else 0.05)
+    return track(CIRCLE[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+
+
+def _sizes(f, rng, runs):
+    rows = [[_per_run(f(m, M, rng, runs), runs) for M in (20, 160)] for m in MODELS]
+    return np.array(rows).transpose(2, 0, 1)  # (runs, model, size)
+
+
+def _typical(x):
+    return np.median(x, axis=0)
+
+
+Q12 = Question(
+    "q12",
+    "Precision and number of particles",
+    (
+        Experiment(
+            id="q12a",
+            title="Three models with 20 and with 160 particles",
+            points=2,
+            claim="a worse model has a larger error that no number of particles removes; "
+            "the circle with 20 particles beats the line with 160, which beats fixed with 160",
+            test="medians over runs, in this order, with gaps of at least 1 px",
+            runs=20,
+            margin="",
+            measure=_sizes,
+            reference=error_with,
+            hints=(
+                "One number per run: the mean error of frames 50 to 250.",
+                "Use the noise of the table in the text for each model.",
+                "lab.model_of(model, sigma, sigma_theta), lab.start_of(model, log, (runs, M), rng).",
+            ),
+            properties=(
+                Property(
+                    "circle with 20 at least 1 px better than line with 160",
+                    lambda x: (
+                        _typical(x)[2, 0] < _typical(x)[1, 1] - 1
+                        or f"{_typical(x)[2, 0]:.1f} and {_typical(x)[1, 1]:.1f} px"
+                    ),
+                ),
+                Property(
+                    "line with 160 at least 1 px better than fixed with 160",
+                    lambda x: (
+                        _typical(x)[1, 1] < _typical(x)[0, 1] - 1
+                        or f"{_typical(x)[1, 1]:.1f} and {_typical(x)[0, 1]:.1f} px"
+                    ),
+                ),
+                Property(
+                    "fixed with 160 between 9 and 14 px",
+                    lambda x: 9 < _typical(x)[0, 1] < 14 or f"{_typical(x)[0, 1]:.1f} px",
+                ),
+                Property(
+                    "fixed gains less than 2 px from eight times the particles",
+                    lambda x: (
+                        _typical(x)[0, 0] < _typical(x)[0, 1] + 2 or f"{_typical(x)[0].round(1)} px"
+                    ),
+                ),
+            ),
+            misconceptions=(
+                Misconception(
+                    "same-noise",
+                    "gives all models the noise that suits the fixed one",
+                    (
+                        "Which process noise does your circle have?",
+                        "An accurate model needs little noise; large noise throws that away.",
+                        "Use sigma 6, 1 and .5 px for fixed, line and circle.",
+                    ),
+                    lambda m, M, rng, runs: _same_noise(m, M, rng, runs),
+                    lambda x: _typical(x)[2, 1] > 6,
+                ),
+                Misconception(
+                    "small-noise",
+                    "gives all models the small noise that suits the circle",
+                    (
+                        "Your fixed model has lost the target.",
+                        "A target that moves 2 px per frame leaves particles that hardly move.",
+                        "Use sigma 6, 1 and .5 px for fixed, line and circle.",
+                    ),
+                    lambda m, M, rng, runs: _same_noise(m, M, rng, runs, 0.5),
+                    lambda x: _typical(x)[0, 1] > 30,
+                ),
+            ),
+        ),
+        Choice(
+            id="q12b",
+            title="Why does the line with 160 particles not reach the circle with 20?",
+            key="c",
+            options={
+                "a": "160 particles are too few for three dimensions",
+                "b": "Systematic resampling favours the circle",
+                "c": "Its model is wrong at each step; the noise that repairs this blurs the answer",
+                "d": "The circle uses the true positions",
+            },
+            feedback={
+                "a": "With 1,000 particles it gains a few tenths of a pixel more, not pixels.",
+                "b": "Both use the same scheme.",
+                "c": "Yes: particles lower the Monte-Carlo error, not the error of the model.",
+                "d": "It uses the true speed and rate; positions come from the measurements.",
+            },
+        ),
+    ),
+)
+
+
+def _same_noise(m, M, rng, runs, sigma=6.0):
+    bel = start_of(m, CIRCLE, (runs, M), rng)
+    motion = model_of(m, sigma, 0.05)
+    return track(CIRCLE[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+
+
+QUESTIONS = (Q9, Q10, Q11, Q12)
