@@ -220,6 +220,8 @@ def _measure(sensor: Any, state: Array, rng: Any, which: dict[str, Any]) -> Arra
 class _Normals:
     """In place of a generator: hands out given standard normals, and counts them."""
 
+    spawn = None  # `require_rng` knows a generator by this name
+
     def __init__(self, given: Array | None = None) -> None:
         self.given, self.used = given, 0
 
@@ -229,10 +231,6 @@ class _Normals:
         return (
             np.zeros(shape) if self.given is None else self.given[first : self.used].reshape(shape)
         )
-
-    def spawn(self, n: int) -> list[_Normals]:
-        """Every Generator has this method, and the models tell a Generator by it."""
-        return [_Normals() for _ in range(n)]
 
     def __getattr__(self, name: str) -> Any:
         raise ParameterError(

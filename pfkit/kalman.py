@@ -75,9 +75,11 @@ class Gaussian:
             )
         if Sigma.ndim == 1:
             Sigma = np.diag(Sigma**2)
-        lowest = np.linalg.eigvalsh(Sigma)[0]
-        if not np.allclose(Sigma, Sigma.T) or lowest < -1e-9 * max(np.trace(Sigma), 1.0):
-            raise ParameterError(f"Sigma must be a covariance, got lowest eigenvalue {lowest:.3g}")
+        lowest, slack = np.linalg.eigvalsh(Sigma)[0], 1e-9 * max(np.trace(Sigma), 1.0)
+        if np.abs(Sigma - Sigma.T).max() > slack or lowest < -slack:
+            raise ParameterError(
+                f"Sigma must be symmetric with eigenvalues >= 0, got {Sigma.tolist()!r:.80}"
+            )
         object.__setattr__(self, "mean", mean)
         object.__setattr__(self, "Sigma", 0.5 * (Sigma + Sigma.T))
 
