@@ -15,7 +15,7 @@ from __future__ import annotations
 
 import math
 
-from pfkit.errors import ParameterError, require_count
+from pfkit.errors import ParameterError, require_count, require_number
 
 
 def chi2_tail(x: float, k: int) -> float:
@@ -31,8 +31,7 @@ def chi2_tail(x: float, k: int) -> float:
     float between 0 and 1; O(k)
     """
     k = require_count("degrees of freedom k", k)
-    if math.isnan(x):
-        raise ParameterError("x must be a number, got nan; repair it first")
+    x = require_number("x", x)
     if x <= 0:
         return 1.0
     half = 0.5 * x
@@ -54,7 +53,7 @@ def chi2_quantile(p: float, k: int) -> float:
     -------
     float, e.g. 5.99 for p = 0.95 and k = 2; found by bisection to 1e-12 of its size
     """
-    if not 0 <= p < 1:
+    if not 0 <= require_number("p", p) < 1:
         raise ParameterError(f"p must be in [0, 1), got {p}; the quantile of 1 is infinite")
     low, high = 0.0, 1.0
     while chi2_tail(high, k) > 1 - p:

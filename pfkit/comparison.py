@@ -24,7 +24,15 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_count, require_finite
+from pfkit.errors import (
+    ParameterError,
+    ShapeError,
+    require_callable,
+    require_count,
+    require_finite,
+    require_number,
+    require_rng,
+)
 
 Array = NDArray[np.float64]
 
@@ -52,7 +60,10 @@ def root_mean_square(x: ArrayLike, axis: int = -1) -> Array:
     -------
     array (...), in that unit
     """
-    return np.sqrt(np.mean(np.square(x), axis=axis))
+    x = require_finite("x", x)
+    if x.size == 0 or x.ndim == 0:
+        raise ShapeError(f"x must be (..., n) with n >= 1, got {x.shape}")
+    return np.sqrt(np.mean(x * x, axis=axis))
 
 
 def bootstrap_interval(
@@ -86,6 +97,8 @@ def bootstrap_interval(
     Source: B. Efron and R. Tibshirani, An Introduction to the Bootstrap (1993). With fewer
     than about 15 runs the interval is too short.
     """
+    require_rng(rng)
+    require_callable("statistic", statistic)
     x = _runs(x, 2)
     _require_level(level)
     again = x[rng.integers(0, x.size, (require_count("draws", draws), x.size), dtype=np.int64)]
@@ -167,6 +180,7 @@ def paired(
     -------
     Comparison
     """
+    require_rng(rng)
     a, b = _runs(a, 2), _runs(b, 2)
     if a.shape != b.shape:
         raise ShapeError(f"paired scores need the same seeds: {a.size} of A, {b.size} of B")
@@ -198,6 +212,9 @@ def compare(
     -------
     Comparison
     """
+    require_callable("run_a", run_a)
+    require_callable("run_b", run_b)
+    seed = require_count("seed", seed, 0)
     streams = np.random.SeedSequence(seed).spawn(require_count("seeds", seeds, 2) + 1)
     a, b = (
         [float(run(np.random.default_rng(stream))) for stream in streams[1:]]
@@ -214,5 +231,5 @@ def _runs(x: ArrayLike, least: int) -> Array:
 
 
 def _require_level(level: float) -> None:
-    if not 0 < level < 1:
+    if not 0 < require_number("level", level) < 1:
         raise ParameterError(f"level must be in (0, 1), got {level}; 0.95 is usual")

@@ -29,6 +29,8 @@ from pfkit.errors import (
     require_components,
     require_count,
     require_finite,
+    require_instance,
+    require_number,
 )
 from pfkit.estimators import covariance, mean_pose
 from pfkit.geometry import wrap
@@ -90,7 +92,7 @@ def nees_band(D: int, runs: int, level: float = 0.95) -> tuple[float, float]:
     low, high : floats; above means confident and wrong, below means too modest
     """
     D, runs = require_count("D", D), require_count("runs", runs)
-    if not 0 < level < 1:
+    if not 0 < require_number("level", level) < 1:
         raise ParameterError(f"level must be in (0, 1), got {level}; 0.95 is usual")
     low, high = (chi2_quantile(0.5 + s * level / 2, D * runs) / runs for s in (-1, 1))
     return low, high
@@ -114,7 +116,7 @@ def coverage(error: ArrayLike, Sigma: ArrayLike, level: float = 0.9) -> Interval
     distance = nees(error, Sigma)
     if distance.ndim != 1:
         raise ShapeError(f"coverage counts runs: error must be (D, n), got {np.shape(error)}")
-    if not 0 < level < 1:
+    if not 0 < require_number("level", level) < 1:
         raise ParameterError(f"level must be in (0, 1), got {level}")
     inside = int(np.sum(distance <= chi2_quantile(level, len(np.asarray(error)))))
     return wilson_interval(inside, distance.size)
@@ -139,6 +141,7 @@ def credibility(bel: Particles, truth: ArrayLike) -> Array | np.float64:
     -------
     float or (B,), between 0 and 1
     """
+    require_instance("bel", bel, Particles)
     D, batch = bel.state.shape[0], bel.log_w.shape[:-1]
     truth = require_finite("truth", require_components("truth", truth, D))
     if truth.shape not in ((D,), (D, *batch), (D, *batch, 1)):

@@ -26,9 +26,12 @@ from pfkit.errors import (
     DataError,
     ParameterError,
     ShapeError,
+    as_numbers,
     require_components,
     require_finite,
-    require_positive,
+    require_instance,
+    require_method,
+    require_number,
 )
 from pfkit.filters import History
 from pfkit.geometry import wrap
@@ -60,12 +63,14 @@ def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
         If the shapes do not belong together, the estimate is not finite or the truth infinite.
     """
     estimate = require_finite("estimate", estimate, DataError)
-    truth = np.asarray(truth, dtype=float)
+    truth = as_numbers("truth", truth, DataError)
     require_finite("truth", truth[~np.isnan(truth)], DataError)
     if estimate.ndim == 0 or estimate.shape[0] < 2:
         raise ShapeError(
             f"estimate must have its components first, shape (D, ...), got {estimate.shape}"
         )
+    if truth.ndim == 0:
+        raise ShapeError(f"truth must be (D, ...), got {truth!r:.40}; log.truth may be None")
     if truth.ndim == estimate.ndim + 1 and truth.shape[-1] == 1:
         truth = truth[..., 0]  # the truths of a batched log are (D, T, B, 1)
     if truth.shape != estimate.shape[: truth.ndim]:
@@ -159,7 +164,7 @@ def settle_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.floa
     float or (B,), seconds; inf if the error does not end below the limit
     """
     t, error = require_finite("t", t), require_finite("error", error)
-    require_positive("limit", limit)
+    require_number("limit", limit, above=0.0)
     if t.ndim != 1 or t.size == 0 or error.shape[:1] != t.shape:
         raise ShapeError(f"error needs one row per time, (T,) or (T, B): {error.shape}, {t.shape}")
     late = np.cumprod((error < limit)[::-1], axis=0).sum(axis=0)  # steps of the good ending
@@ -187,6 +192,8 @@ def dead_reckoning(log: Log, motion: MotionModel, start: ArrayLike | None = None
     ParameterError
         If neither the argument nor the log says where the robot started.
     """
+    require_instance("log", log, Log)
+    require_method("motion", motion, "mean")
     if start is None:
         start = log.start
     if start is None:
@@ -216,6 +223,7 @@ def trace(history: History) -> Table:
     ShapeError
         If the history holds a batch.
     """
+    require_instance("history", history, History)
     if history.ess.ndim != 1:
         raise ShapeError(f"trace needs one run, got a batch of {history.ess.shape[1]}; pick one")
     T = len(history.t)

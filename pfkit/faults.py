@@ -19,6 +19,8 @@ from pfkit.errors import (
     require_components,
     require_finite,
     require_fraction,
+    require_instance,
+    require_number,
 )
 from pfkit.geometry import wrap
 from pfkit.maps import LandmarkMap
@@ -43,9 +45,9 @@ class Sight:
     fov: float = 2 * np.pi
 
     def __post_init__(self) -> None:
-        if not self.r_max > 0:
-            raise ParameterError(f"r_max must be > 0, got {self.r_max}; inf sees everything")
-        if not 0 < self.fov <= 2 * np.pi + 1e-9:
+        require_instance("world", self.world, LandmarkMap)
+        require_number("r_max", self.r_max, above=0.0)
+        if not 0 < require_number("fov", self.fov) <= 2 * np.pi + 1e-9:
             raise ParameterError(f"fov must be in (0, 2 pi] radians, got {self.fov}")
 
     def __call__(self, pose: Array) -> NDArray[np.bool_]:

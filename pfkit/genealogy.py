@@ -29,9 +29,11 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     ParameterError,
     ShapeError,
+    require_callable,
     require_count,
     require_finite,
     require_fraction,
+    require_rng,
 )
 from pfkit.resampling import Resampler
 
@@ -198,7 +200,11 @@ def offspring_z(
     -------
     array (M,). A count that never varies has z = 0 if it is right and infinity if it is not.
     """
+    require_callable("scheme", scheme)
+    require_rng(rng)
     w = require_finite("w", w)
+    if w.ndim != 1 or w.size == 0:
+        raise ShapeError(f"w must be the weights (M,) of one set, M >= 1, got {w.shape}")
     draws, n = require_count("draws", draws, 2), w.size if n is None else require_count("n", n)
     counts = np.stack([np.bincount(scheme(w, rng, n), minlength=w.size) for _ in range(draws)])
     excess = counts.mean(axis=0) - n * w / w.sum()

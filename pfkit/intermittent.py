@@ -19,6 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pfkit.errors import require_method
 from pfkit.sensors import Sensor
 
 Array = NDArray[np.float64]
@@ -35,6 +36,9 @@ class Intermittent(Sensor):
     """
 
     sensor: Sensor
+
+    def __post_init__(self) -> None:
+        require_method("sensor", self.sensor, "log_density")
 
     @property
     def components(self) -> int:  # type: ignore[override]

@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.datasets.text import read_table
-from pfkit.errors import DataError, ShapeError, require_count
+from pfkit.errors import DataError, ShapeError, require_count, require_instance
 from pfkit.log import Log
 from pfkit.maps import LandmarkMap
 from pfkit.occupancy import OccupancyGrid
@@ -48,6 +48,7 @@ def save_log(log: Log, folder: str | Path, digits: int = 17) -> None:
     ShapeError
         If the log holds a batch.
     """
+    require_instance("log", log, Log)
     if log.u.ndim != 2:
         raise ShapeError(f"only single drives can be saved, got u {log.u.shape}; pick one run")
     require_count("digits", digits)

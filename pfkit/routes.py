@@ -25,7 +25,9 @@ from pfkit.errors import (
     ShapeError,
     require_components,
     require_finite,
-    require_positive,
+    require_instance,
+    require_number,
+    require_rng,
 )
 from pfkit.geometry import wrap
 from pfkit.odometry_motion import OdometryMotion, odometry_control
@@ -50,7 +52,9 @@ def commands(segments: Iterable[tuple[float, float, float]], dt: float) -> Array
     ParameterError, ShapeError
         If a number is not finite, a duration is negative, or a command has not three numbers.
     """
-    require_positive("dt", dt)
+    dt = require_number("dt", require_finite("dt", dt), above=0.0)
+    if not isinstance(segments, Iterable):
+        raise ShapeError(f"segments must be a list of (v, omega, seconds), got {segments!r:.40}")
     columns: list[Array] = []
     for segment in segments:
         values = require_finite("a command (v, omega, seconds)", segment)
@@ -107,7 +111,7 @@ class PurePursuit:
     def __post_init__(self) -> None:
         points = require_finite("points", require_components("points", self.points, 2))
         for name in ("v", "dt", "lookahead", "omega_max"):
-            require_positive(name, getattr(self, name))
+            require_number(name, require_finite(name, getattr(self, name)), above=0.0)
         if points.ndim != 2 or points.shape[1] < 2:
             raise ShapeError(f"points must be (2, P) with P >= 2, got {points.shape}")
         knots = np.append(points, points[:, :1], axis=1) if self.closed else points
@@ -179,6 +183,6 @@ def odometry_along(
     u = odometry_control(before, truth)
     if motion is None:
         return u
-    if rng is None:
-        raise ParameterError("noisy odometry needs rng, got None; pass a numpy Generator")
-    return u + np.sqrt(motion.variances(u)) * rng.standard_normal(u.shape)
+    require_instance("motion", motion, OdometryMotion)
+    require_rng(rng)
+    return u + np.sqrt(motion.variances(u)) * rng.standard_normal(u.shape)  # type: ignore[union-attr]

@@ -25,7 +25,15 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_count, require_finite, require_positive
+from pfkit.errors import (
+    ParameterError,
+    ShapeError,
+    require_count,
+    require_finite,
+    require_method,
+    require_positive,
+    require_rng,
+)
 from pfkit.faults import Outliers
 from pfkit.intermittent import Intermittent
 from pfkit.log import Log
@@ -72,6 +80,8 @@ def drive(
     ShapeError, ParameterError
         If start or u have the wrong shape, or a kidnapping has no step or no world.
     """
+    require_method("motion", motion, "sample")
+    require_rng(rng)
     pose = require_finite("start", start)
     if pose.ndim not in (1, 3):
         raise ShapeError(f"start must be (D,), or (D, B, 1) for a batch, got {pose.shape}")
@@ -125,6 +135,8 @@ def sense(
     ShapeError, ParameterError
         If truth has the wrong shape, or a batch with `sight` has no `Intermittent` sensor.
     """
+    require_method("sensor", sensor, "sample")
+    require_rng(rng)
     truth, every = require_finite("truth", truth), require_count("every", every)
     if truth.ndim not in (2, 4):
         raise ShapeError(f"truth must be (D, T), or (D, T, B, 1) for a batch, got {truth.shape}")
@@ -187,6 +199,7 @@ def simulate_log(
     ShapeError, ParameterError
         As `drive` and `sense`; also if the robots of a batch have different dt.
     """
+    require_rng(rng)
     start = require_finite("start", start)
     if batch is not None:
         start = _side_by_side(start, require_count("batch", batch))

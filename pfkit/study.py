@@ -47,7 +47,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_count
+from pfkit.errors import ParameterError, ShapeError, require_callable, require_count
 from pfkit.table import Table, from_csv, summarise, tabulate, to_csv
 
 __all__ = ["from_csv", "grid", "one_by_one", "run", "summarise", "to_csv"]
@@ -77,6 +77,7 @@ class one_by_one:
     """
 
     def __init__(self, function: Callable[..., Mapping[str, float]]) -> None:
+        require_callable("function", function)
         self.function = function
 
     def __call__(self, rng: np.random.Generator, B: int, **setting: Any) -> dict[str, list[float]]:
@@ -122,7 +123,8 @@ def run(
     ParameterError, ShapeError
         If there is no setting, keys differ, or a result has not one number per run.
     """
-    settings = _check_settings(settings)
+    require_callable("experiment", experiment)
+    settings, seed = _check_settings(settings), require_count("seed", seed, 0)
     runs, block = require_count("runs", runs), require_count("block", block)
     first = range(0, runs, block)
     tasks = [
@@ -182,9 +184,9 @@ def _submitted(tasks: list[tuple], executor: Executor, bar: _Bar) -> list[dict[s
 
 
 def _check_settings(settings: Iterable[Setting]) -> list[Setting]:
-    settings = list(settings)
-    if not settings:
-        raise ParameterError("a study needs at least one setting; pass [{}] for none")
+    settings = list(settings) if isinstance(settings, Iterable) else []
+    if not settings or not all(isinstance(setting, Mapping) for setting in settings):
+        raise ParameterError("a study needs a list of settings, e.g. of grid(); pass [{}] for none")
     for setting in settings:
         if list(setting) != list(settings[0]):
             raise ParameterError(

@@ -24,7 +24,8 @@ from pfkit.errors import (
     ShapeError,
     require_components,
     require_finite,
-    require_positive,
+    require_instance,
+    require_number,
 )
 from pfkit.geometry import compose, wrap
 from pfkit.maps import LandmarkMap
@@ -61,7 +62,8 @@ def symmetries(world: LandmarkMap, tolerance: float = 1e-6, mirror: bool = False
     -----
     O(L^4) in the worst case: 40 landmarks take some milliseconds.
     """
-    require_positive("tolerance", tolerance)
+    require_instance("world", world, LandmarkMap)
+    require_number("tolerance", tolerance, above=0.0)
     if len(world) < 2:
         raise ParameterError("one landmark has a whole circle of symmetries; need at least two")
     m = world.positions[0] + 1j * world.positions[1]
@@ -119,8 +121,9 @@ def hypothesis_mass(bel: Particles, poses: ArrayLike, radius: float, angle: floa
     array (H,) or (H, B), between 0 and 1
     """
     poses = require_finite("poses", require_components("poses", poses, 3))
-    require_positive("radius", radius)
-    require_positive("angle", angle)
+    require_instance("bel", bel, Particles)
+    require_number("radius", radius, above=0.0)
+    require_number("angle", angle, above=0.0)
     if poses.ndim not in (2, bel.state.ndim):
         raise ShapeError(f"poses must be (3, H), or (3, H, B) for a batch, got {poses.shape}")
     missing = bel.state.ndim - poses.ndim + 1

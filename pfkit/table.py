@@ -22,7 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.comparison import bootstrap_interval
-from pfkit.errors import DataError, ParameterError, ShapeError
+from pfkit.errors import DataError, ParameterError, ShapeError, require_instance
 
 Table = NDArray[np.void]
 
@@ -38,6 +38,7 @@ def tabulate(columns: Mapping[str, ArrayLike]) -> Table:
     -------
     structured array (n,), one field per column
     """
+    require_instance("columns", columns, Mapping)
     arrays = {name: np.asarray(column) for name, column in columns.items()}
     shapes = {array.shape for array in arrays.values()}
     if len(shapes) != 1 or len(min(shapes)) != 1:
@@ -72,9 +73,9 @@ def summarise(
     structured array, one row per group in order of appearance: the columns of `by`, ``runs``,
     ``value``, ``low`` and ``high``
     """
-    by = [by] if isinstance(by, str) else list(by)
-    names = table.dtype.names or ()
-    unknown = [name for name in (*by, value) if name not in names]
+    names = _names(table)
+    by = [by] if isinstance(by, str) or not isinstance(by, Sequence) else list(by)
+    unknown = [name for name in (*by, value) if str(name) not in names]
     if unknown:
         raise ParameterError(f"no column {unknown[0]!r}; the table has {names}")
     groups: dict[tuple, list[int]] = {}
@@ -94,9 +95,10 @@ def summarise(
 
 def to_csv(table: Table, path: str | os.PathLike[str]) -> None:
     """Write a table as CSV with a header; numbers keep all their digits."""
+    names = _names(table)
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(table.dtype.names or ())
+        writer.writerow(names)
         writer.writerows(table.tolist())
 
 
@@ -117,6 +119,14 @@ def from_csv(path: str | os.PathLike[str]) -> Table:
             raise DataError(f"{path}, line {number}: {len(row)} fields, header has {len(rows[0])}")
     cells = zip(*rows[1:], strict=True)
     return tabulate({name: _parse(column) for name, column in zip(rows[0], cells, strict=True)})
+
+
+def _names(table: Table) -> tuple[str, ...]:
+    """The columns of a structured array."""
+    names = getattr(getattr(table, "dtype", None), "names", None)
+    if not names:
+        raise ParameterError(f"a table must be a structured array, got {table!r:.60}; see tabulate")
+    return names
 
 
 def _parse(column: Sequence[str]) -> NDArray[Any]:
