@@ -126,7 +126,8 @@ from pfkit.calibration import Calibration, calibrate
 from pfkit.datasets import load_log, load_mrclam, load_plaza
 from pfkit.routes import PurePursuit, commands, odometry_along
 from pfkit.logfile import read_log, save_log
-from pfkit.simulate import drive, sense, simulate_log
+from pfkit.driving import drive
+from pfkit.simulate import sense, simulate_log
 
 # L5: studies
 from pfkit import study
