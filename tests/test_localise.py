@@ -1,0 +1,155 @@
+"""The command and the call behind it, on the logs that are shipped."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import pfkit as pf
+from pfkit.__main__ import main
+from pfkit.localise import calibrate_first, localise, reckon, score, settings_for
+
+DATA = Path(__file__).parents[1] / "data"
+
+
+@pytest.fixture(scope="module")
+def twin():
+    return pf.load_mrclam(DATA / "mrclam_twin")
+
+
+@pytest.fixture(scope="module")
+def plaza():
+    return pf.load_plaza(DATA / "plaza2")
+
+
+def run(log, start="known", seeds=5, calibration=None, seed=0, **options):
+    settings = settings_for(log, calibration)
+    corrected = log if calibration is None else calibration.apply(log)
+    rng = np.random.default_rng(seed)
+    track = localise(corrected, rng, start, batch=seeds, settings=settings, **options)
+    return track, score(
+        log, track.estimate, settings.limit, track.first if start == "global" else 0
+    )
+
+
+def test_dead_reckoning_is_that_of_the_motion_model(twin):
+    slow = pf.dead_reckoning(twin, pf.VelocityMotion())
+    np.testing.assert_allclose(reckon(twin)[:2], slow[:2], atol=1e-8)
+
+
+def test_the_twin_known_start(twin):
+    _, plain = run(twin)
+    _, calibrated = run(twin, calibration=calibrate_first(twin, 100))
+    assert plain.rmse.mean() < 0.12
+    assert calibrated.rmse.mean() < 0.7 * plain.rmse.mean()
+    assert score(twin, reckon(twin), 0.5).rmse > 5 * plain.rmse.mean()
+
+
+def test_the_twin_global_start(twin):
+    track, s = run(twin[: len(twin) // 4], "global", seeds=8, M=2000)
+    assert (s.converged - track.first < 9).all()
+    assert s.rmse.mean() < 0.15
+
+
+def test_plaza_with_and_without_its_biases(plaza):
+    _, biased = run(plaza, seeds=5)
+    _, fitted = run(plaza, seeds=5, calibration=calibrate_first(plaza, 136.5))
+    assert score(plaza, reckon(plaza), 5).rmse == pytest.approx(31.7, abs=0.1)
+    assert fitted.rmse.mean() < 1.5
+    assert biased.rmse.mean() > 3
+
+
+def test_composed_odometry_changes_the_error_by_less_than_five_millimetres(twin):
+    """Same model, one predict per measurement against one per row; sd of the difference < 1 mm."""
+    part = twin[: len(twin) // 3]
+    _, short = run(part, seeds=10)
+    _, long = run(part, seeds=10, every_row=True, seed=1)
+    difference = short.rmse.mean() - long.rmse.mean()
+    error = np.sqrt((short.rmse.var() + long.rmse.var()) / 9)
+    assert abs(difference) + 2 * error < 0.005
+
+
+def test_unknown_truth_is_not_scored(twin):
+    log = replace(twin[:500], truth=twin.truth[:, :500].copy())
+    log.truth[:, 100:200] = np.nan
+    track, s = run(log, seeds=2)
+    assert np.isfinite(track.estimate).all() and np.isfinite(s.rmse).all()
+
+
+def test_a_known_start_needs_a_start(twin):
+    with pytest.raises(pf.DataError, match="global"):
+        localise(replace(twin, start=None), np.random.default_rng(0))
+
+
+def test_a_log_without_measurements_is_refused(twin):
+    with pytest.raises(pf.DataError, match="no measurement"):
+        settings_for(replace(twin, z=[np.empty((3, 0))] * len(twin)))
+
+
+def test_the_command_prints_a_table_and_writes_the_track(tmp_path, capsys, twin):
+    code = main(
+        f"localise {DATA / 'mrclam_twin'} --particles 300 --seed 3 --out {tmp_path / 'o'}".split()
+    )
+    out, err = capsys.readouterr()
+    assert code == 0
+    for word in ("dead reckoning", "filter", "RMSE", "median", "95 %", "steps/s", "for good"):
+        assert word in out
+    assert "100 %" in err
+    table = np.genfromtxt(tmp_path / "o" / "track.csv", delimiter=",", names=True)
+    assert table.dtype.names == ("t", "x", "y", "theta", "sd")
+    assert len(table) == twin.scored.sum()
+    truth = twin.truth[:, twin.scored]
+    assert np.sqrt(np.mean((table["x"] - truth[0]) ** 2 + (table["y"] - truth[1]) ** 2)) < 0.2
+    assert (tmp_path / "o" / "track.png").stat().st_size > 5000
+
+
+def test_the_command_is_reproducible(tmp_path, capsys):
+    for name in "ab":
+        assert (
+            main(f"localise {DATA / 'plaza2'} --particles 50 --out {tmp_path / name}".split()) == 0
+        )
+    assert "range bias" in capsys.readouterr().out
+    assert (tmp_path / "a/track.csv").read_bytes() == (tmp_path / "b/track.csv").read_bytes()
+
+
+def test_the_command_calibrates_and_starts_anywhere(tmp_path, capsys):
+    line = f"localise {DATA / 'mrclam_twin'} --start global --calibrate 100 --particles 1500 --out"
+    assert main([*line.split(), str(tmp_path)]) == 0
+    out = capsys.readouterr().out
+    assert "delay" in out and "from the first measurement on" in out
+
+
+BAD = {
+    "no folder": "localise no_such_folder",
+    "no particles": "localise {twin} --particles 0",
+    "word for a number": "localise {twin} --particles many",
+    "unknown start": "localise {twin} --start somewhere",
+    "negative seed": "localise {twin} --seed -1",
+    "negative calibration": "localise {twin} --calibrate -5",
+    "calibration before any measurement": "localise {twin} --calibrate 3",
+    "no command": "",
+    "empty folder": "localise {empty}",
+    "a file": "localise {twin}/Barcodes.dat",
+    "a broken file": "localise {broken}",
+    "out is a file": "localise {twin} --particles 20 --out {twin}/Barcodes.dat",
+}
+
+
+@pytest.mark.parametrize("case", BAD)
+def test_bad_input_is_one_line_and_exit_two(tmp_path, capsys, case):
+    (tmp_path / "empty").mkdir()
+    shutil.copytree(DATA / "mrclam_twin", tmp_path / "broken")
+    (tmp_path / "broken" / "Barcodes.dat").write_text("6 45\n7 ninety\n")
+    line = BAD[case].format(
+        twin=DATA / "mrclam_twin", empty=tmp_path / "empty", broken=tmp_path / "broken"
+    )
+    try:
+        code = main(line.split())
+    except SystemExit as stop:
+        code = stop.code
+    err = capsys.readouterr().err
+    said = [row for row in err.splitlines() if not row.startswith("filtering")]
+    assert code == 2
+    assert len(said) == 1 and len(said[0]) > 20
