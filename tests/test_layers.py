@@ -45,16 +45,8 @@ LAYERS: dict[str, list[str]] = {
         "tempering",
     ],
     "L4": [
-        *[
-            "odometry",
-            "routes",
-            "driving",
-            "simulate",
-            "datasets",
-            "logfile",
-            "comparison",
-            "table",
-        ],
+        *["odometry", "routes", "driving", "simulate", "datasets", "logfile"],
+        *["comparison", "table"],
         *["diagnostics", "observability", "calibration", "consistency", "divergence"],
         *["symmetry", "localise"],
     ],

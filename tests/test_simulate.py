@@ -54,15 +54,6 @@ def test_measurement_errors_are_those_of_the_sensor():
         assert abs(e[:, row].std() / sigma - 1) < 4.5 / math.sqrt(2 * n)
 
 
-def test_execution_errors_are_those_of_the_motion_model():
-    motion = pf.VelocityMotion((0.04, 0.0, 0.0, 0.0))
-    u = np.tile(np.array([[1.0], [0.0], [1.0]]), 4000)
-    _, truth = pf.drive(np.zeros(3), u, motion, rng())
-    strides = np.diff(truth[0], prepend=0.0)
-    assert abs(strides.mean() - 1) < 4.5 * 0.2 / math.sqrt(4000)
-    assert abs(strides.std() / 0.2 - 1) < 4.5 / math.sqrt(8000)
-
-
 def test_a_batch_of_one_is_the_single_run_bit_for_bit():
     one = pf.simulate_log(START, TURN, NOISY, SENSOR, rng(5))
     batch = pf.simulate_log(START, TURN, NOISY, SENSOR, rng(5), batch=1)
@@ -109,153 +100,6 @@ def test_the_world_may_move_with_the_robot():
     np.testing.assert_allclose(np.stack(there.z), np.stack(here.z), atol=1e-12)
 
 
-# sight
-
-
-def test_sight_by_range_and_by_field_of_view():
-    near = pf.Sight(WORLD, r_max=4.0)
-    np.testing.assert_array_equal(near(np.array([3.0, 2.0, 0.0])), [True, True, False])
-    ahead = pf.Sight(WORLD, fov=np.pi)
-    np.testing.assert_array_equal(ahead(np.array([3.0, 2.0, 0.0])), [False, True, True])
-    np.testing.assert_array_equal(ahead(np.array([3.0, 2.0, np.pi])), [True, False, False])
-    poses = rng().uniform(-3, 3, size=(3, 7, 1))
-    assert ahead(poses).shape == (3, 7, 1)
-
-
-def test_only_seen_landmarks_are_measured():
-    sight = pf.Sight(WORLD, r_max=4.0, fov=np.pi)
-    log = pf.simulate_log(START, TURN, NOISY, SENSOR, rng(), sight=sight)
-    assert {z.shape[1] for z in log.z} != {3}
-    for _, _, z, truth in log:
-        np.testing.assert_array_equal(z[2], WORLD.ids[sight(truth)])
-
-
-def test_intermittent_columns_say_nothing_when_unseen():
-    sensor = pf.Intermittent(SENSOR)
-    pose = rng().uniform(-3, 3, size=(3, 50))
-    z = sensor.sample(START, rng())
-    z[-1] = [1, 0, 1]
-    expected = SENSOR.log_likelihood(z[:3, [0, 2]], pose)
-    np.testing.assert_allclose(sensor.log_likelihood(z, pose), expected)
-    np.testing.assert_array_equal(sensor.expected(START)[:3], SENSOR.expected(START))
-
-
-def test_a_batch_with_sight_marks_what_each_robot_sees():
-    sight, sensor = pf.Sight(WORLD, r_max=4.0), pf.Intermittent(SENSOR)
-    log = pf.simulate_log(START, TURN, NOISY, sensor, rng(), batch=5, sight=sight)
-    for _, _, z, truth in log:
-        np.testing.assert_array_equal(z[-1], sight(truth))
-    with pytest.raises(pf.ParameterError, match="Intermittent"):
-        pf.simulate_log(START, TURN, NOISY, SENSOR, rng(), batch=5, sight=sight)
-
-
-# outliers
-
-
-def test_outliers_are_labelled_and_as_many_as_asked_for():
-    false = pf.Outliers(0.3, (0.0, -np.pi), (10.0, np.pi))
-    log = pf.simulate_log(START, np.tile(TURN, 30), NOISY, SENSOR, rng(), outliers=false)
-    labels = np.stack(log.outlier)
-    n = labels.size
-    assert abs(labels.mean() - 0.3) < 4.5 * math.sqrt(0.3 * 0.7 / n)
-    e = residuals(log)[:, 0]
-    assert np.abs(e[~labels]).max() < 6 * 0.2  # honest ones stay honest
-    z = np.stack(log.z)
-    wild = z[:, 0][labels]
-    assert abs(wild.mean() - 5) < 4.5 * 10 / math.sqrt(12 * wild.size)
-    np.testing.assert_array_equal(z[:, 2], np.tile(WORLD.ids, (len(log), 1)))  # ids stay
-    assert false.density == pytest.approx(1 / (20 * np.pi))
-
-
-def test_outliers_do_not_change_the_honest_measurements():
-    false = pf.Outliers(0.3, (0.0, -np.pi), (10.0, np.pi))
-    _, truth = pf.drive(START, TURN, NOISY, rng())
-    never = pf.Outliers(0.0, false.low, false.high)
-    a, _ = pf.sense(truth, SENSOR, rng(1), outliers=never)
-    b, labels = pf.sense(truth, SENSOR, rng(1), outliers=false)
-    for one, other, bad in zip(a, b, labels, strict=True):
-        np.testing.assert_array_equal(one[:, ~bad], other[:, ~bad])
-
-
-def test_a_batch_has_labels_of_its_own():
-    false = pf.Outliers(0.5, (0.0,), (10.0,))
-    log = pf.simulate_log(START, TURN, NOISY, SENSOR, rng(), batch=4, outliers=false)
-    assert log.outlier[0].shape == (3, 4, 1)
-
-
-# kidnapping
-
-
-def test_kidnapping_moves_the_robot_and_tells_nobody():
-    goal = np.array([0.0, 5.0, -1.0])
-    log = pf.simulate_log(START, TURN, STILL, SENSOR, rng(), kidnap={9: goal})
-    free = pf.simulate_log(START, TURN, STILL, SENSOR, rng())
-    np.testing.assert_array_equal(log.u, free.u)
-    np.testing.assert_array_equal(log.truth[:, :9], free.truth[:, :9])
-    np.testing.assert_array_equal(log.truth[:, 9], goal)
-    np.testing.assert_allclose(log.truth[:, 10], STILL.mean(goal, TURN[:, 10]))
-
-
-def test_kidnapping_to_anywhere_stays_in_the_world():
-    log = pf.simulate_log(START, TURN, STILL, SENSOR, rng(), kidnap={9: None}, batch=50)
-    taken = log.truth[:, 9, :, 0]
-    assert WORLD.contains(*taken[:2]).all()
-    assert len(np.unique(taken[0])) == 50
-
-
-# drivers
-
-
-def test_commands_cut_time_into_steps_that_add_up():
-    u = pf.commands([(0.5, 0.0, 1.0), (0.0, 0.3, 0.25)], dt=0.1)
-    np.testing.assert_allclose(u[2], [0.1] * 10 + [0.1, 0.1, 0.05])
-    assert u[0] @ u[2] == pytest.approx(0.5)
-    assert u[1] @ u[2] == pytest.approx(0.075)
-
-
-def test_command_lists_drive_the_published_figure():
-    """Ahead, quarter turn right, ahead, quarter turn left, ahead: (1, -.5, 0)."""
-    quarter = np.pi / 2
-    u = pf.commands([(0.5, 0, 1), (0, -quarter, 1), (0.5, 0, 1), (0, quarter, 1), (0.5, 0, 1)], 0.1)
-    _, truth = pf.drive(np.zeros(3), u, STILL, rng())
-    np.testing.assert_allclose(truth[:, -1], [1.0, -0.5, 0.0], atol=1e-12)
-
-
-def test_pure_pursuit_stays_on_the_route_despite_noise():
-    points = np.array([[0.0, 6.0, 6.0, 0.0], [0.0, 0.0, 4.0, 4.0]])
-    driver = pf.PurePursuit(points, v=0.5, dt=0.1, lookahead=0.4)
-    _, truth = pf.drive(np.zeros((3, 5, 1)), driver, NOISY, rng(), steps=600)
-    x, y = truth[:2, ..., 0]
-    to_sides = np.minimum.reduce([np.abs(y), np.abs(y - 4), np.abs(x), np.abs(x - 6)])
-    assert to_sides.max() < 0.4
-    assert x.max() > 5.8 and y.max() > 3.8  # it went round
-
-
-def test_pure_pursuit_stops_at_the_end_of_an_open_route():
-    driver = pf.PurePursuit([[0.0, 2.0], [0.0, 0.0]], v=0.5, dt=0.1, closed=False)
-    u, truth = pf.drive(np.zeros(3), driver, STILL, rng(), steps=60)
-    assert (u[0, -15:] == 0).all()
-    np.testing.assert_allclose(truth[:, -1], [2.0, 0.0, 0.0], atol=0.06)
-
-
-def test_pure_pursuit_of_a_batch_is_that_of_its_robots():
-    driver = pf.PurePursuit([[0.0, 6.0, 3.0], [0.0, 0.0, 4.0]], v=0.5, dt=0.1)
-    poses = rng().uniform(-1, 5, size=(3, 8, 1))
-    together = driver(0, poses)
-    for b in range(8):
-        np.testing.assert_allclose(together[:, b, 0], driver(0, poses[:, b, 0]))
-
-
-def test_odometry_along_a_path_leads_back_along_it():
-    _, truth = pf.drive(START, TURN, NOISY, rng())
-    u = pf.odometry_along(START, truth)
-    log = pf.simulate_log(START, u, pf.OdometryMotion((0.0,) * 4), SENSOR, rng())
-    np.testing.assert_allclose(log.truth, truth, atol=1e-12)
-    np.testing.assert_allclose(log.t, np.arange(1, 31))
-    noisy = pf.odometry_along(START, truth, pf.OdometryMotion(), rng())
-    assert not np.allclose(noisy, u)
-
-
 def test_states_need_not_be_poses():
     class Drift:
         def mean(self, state, u):
@@ -297,46 +141,6 @@ def test_bad_input_is_named(change, error, message):
         pf.simulate_log(**(good | change))
 
 
-def test_a_motion_model_that_breaks_the_shape_is_named():
-    class Careless:
-        def sample(self, pose, u, rng):
-            return pose + u
-
-    with pytest.raises(pf.ShapeError, match="row by row"):
-        pf.drive(START[:, None, None], TURN, Careless(), rng())
-
-
-def test_bad_parts_are_named():
-    with pytest.raises(pf.ParameterError, match="r_max"):
-        pf.Sight(WORLD, r_max=0)
-    with pytest.raises(pf.ParameterError, match="fov"):
-        pf.Sight(WORLD, fov=7)
-    with pytest.raises(pf.ParameterError, match="low"):
-        pf.Outliers(0.1, (1.0,), (0.0,))
-    with pytest.raises(pf.ParameterError, match="way-points"):
-        pf.PurePursuit([[0, 0, 1], [0, 0, 1]], 1, 0.1)
-    with pytest.raises(pf.ShapeError, match="points"):
-        pf.PurePursuit([[0], [0]], 1, 0.1)
-    with pytest.raises(pf.ParameterError, match="last"):
-        pf.commands([(1, 0, -1)], 0.1)
-    with pytest.raises(pf.ShapeError, match="command"):
-        pf.commands([(1, 0)], 0.1)
-    with pytest.raises(pf.ParameterError, match="rng"):
-        pf.odometry_along(START, START[:, None], pf.OdometryMotion())
-    with pytest.raises(pf.ParameterError, match="world"):
-        pf.drive(START, TURN, STILL, rng(), kidnap={0: None})
-    clocks = np.ones((3, 4, 2, 1)) * np.array([1.0, 2.0]).reshape(2, 1)
-    with pytest.raises(pf.ParameterError, match="clock"):
-        pf.simulate_log(np.zeros((3, 2, 1)), clocks, STILL, SENSOR, rng())
-    with pytest.raises(pf.ShapeError, match="truth"):
-        pf.sense(START, SENSOR, rng())
-    with pytest.raises(pf.ShapeError, match="drop batch"):
-        pf.simulate_log(np.zeros((3, 2, 1)), TURN, STILL, SENSOR, rng(), batch=2)
-
-
-# beams in a grid
-
-
 def test_beams_of_a_batch_are_those_of_ray_casting_but_for_labelled_ones():
     grid = worlds.office()
     directions = np.linspace(-2.0, 2.0, 9)
@@ -362,3 +166,13 @@ def test_beams_of_a_batch_are_those_of_ray_casting_but_for_labelled_ones():
         assert np.abs(miss[honest]).max() < 6 * 0.02
         assert log.z[k].shape == (2, 9, 3, 1)
     assert 0.1 < np.mean([labels.mean() for labels in log.outlier[4::5]]) < 0.3
+
+
+def test_bad_parts_are_named():
+    clocks = np.ones((3, 4, 2, 1)) * np.array([1.0, 2.0]).reshape(2, 1)
+    with pytest.raises(pf.ParameterError, match="clock"):
+        pf.simulate_log(np.zeros((3, 2, 1)), clocks, STILL, SENSOR, rng())
+    with pytest.raises(pf.ShapeError, match="truth"):
+        pf.sense(START, SENSOR, rng())
+    with pytest.raises(pf.ShapeError, match="drop batch"):
+        pf.simulate_log(np.zeros((3, 2, 1)), TURN, STILL, SENSOR, rng(), batch=2)
