@@ -16,7 +16,7 @@ from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
 
 CELLS = 24
-DOORS = {"three": (3, 6, 15), "even": (2, 8, 14, 20), "one": (9,), "none": ()}
+DOORS = {"five": (2, 5, 6, 12, 19), "three": (3, 6, 15), "even": (2, 8, 14, 20), "one": (9,), "none": ()}
 
 
 class Corridor(Scene):
@@ -36,7 +36,7 @@ class Corridor(Scene):
             "hit",
             "Hit rate",
             "range",
-            0.8,
+            0.9,
             lo=0.01,
             hi=0.99,
             step=0.01,
@@ -46,7 +46,7 @@ class Corridor(Scene):
             "false",
             "False alarm rate",
             "range",
-            0.1,
+            0.08,
             lo=0.01,
             hi=0.99,
             step=0.01,

@@ -351,7 +351,7 @@ PANELS = {
         ("M", "scheme", "threshold", "noise", "trust", "sigma_r", "fifth", "names", *HANDS),
         values={"world": "square", "show": "copies", "names": False, "sight": 22.0, "M": 1000,
                 "sigma_r": 0.5, "threshold": 0.7},
-        record=(420, 14),
+        record=(416, 16),
         missions=(
             Mission(
                 "Wait until fewer than four hypotheses are alive. Nothing the robot saw told them "

@@ -1,0 +1,144 @@
+"""Every scene keeps the promises of the protocol, whatever it shows."""
+
+from __future__ import annotations
+
+import json
+from xml.etree import ElementTree
+
+import numpy as np
+import pytest
+
+from pfkit.errors import ParameterError
+from pfkit.explore import SCENES, scene
+from pfkit.explore.host import Host
+from pfkit.explore.pen import OPS, Pen, records
+from pfkit.explore.record import record, to_script
+from pfkit.explore.still import to_svg
+
+PANELS = [(name, panel) for name in SCENES for panel in type(scene(name)).panels]
+LARGEST_RUN = 150_000  # bytes
+
+
+def run(name, panel, seed=5, steps=40):
+    s = scene(name, panel, seed)
+    for _ in range(steps):
+        s.step()
+    return s
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_same_seed_same_history(name, panel):
+    (a, told), (b, again) = (run(name, panel).frame() for _ in range(2))
+    assert np.array_equal(a, b, equal_nan=True) and told == again
+    assert not np.array_equal(a, run(name, panel, seed=6).frame()[0], equal_nan=True)
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_reset_forgets_everything(name, panel):
+    s = run(name, panel)
+    s.reset(5)
+    for _ in range(40):
+        s.step()
+    assert np.array_equal(s.frame()[0], run(name, panel).frame()[0], equal_nan=True)
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_drawing_is_float32_and_made_of_known_records(name, panel):
+    drawing, readouts = run(name, panel).frame()
+    assert drawing.dtype == np.float32 and drawing.ndim == 1
+    assert {op for op, _, _ in records(drawing)} <= set(OPS)
+    assert sum(3 + n.size for _, _, n in records(drawing)) == drawing.size
+    assert readouts and all(isinstance(v, str | float) for v in readouts.values())
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_every_control_of_a_panel_can_be_moved_to_its_ends(name, panel):
+    s = scene(name, panel, 2)
+    for control in (s.by_name[n] for n in s.panel.controls):
+        ends = {
+            "range": [control.lo, min(control.hi, 2000), control.default],
+            "choice": [key for key, _ in control.choices],
+            "toggle": [not control.default, control.default],
+            "button": [True],
+            "point": [(1.0, 1.0, 0), (2.0, 2.0, 1), (2.0, 2.0, 2)],
+        }[control.kind]
+        for value in ends:
+            s.set(control.name, value)
+            for _ in range(13):
+                s.step()
+            s.frame()
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_has_three_missions_an_alt_text_and_help(name, panel):
+    s = scene(name, panel)
+    assert len(s.panel.missions) == 3 and len(s.panel.alt) > 60
+    for control in (s.by_name[n] for n in s.panel.controls):
+        assert control.label and (control.help or control.kind == "point")
+    json.dumps(s.describe(), allow_nan=False)
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_recorded_run_is_small_and_shows_the_live_run(name, panel):
+    s = scene(name, panel, 3)
+    recording = record(s)
+    assert len(to_script(recording, "x")) < LARGEST_RUN
+    ticks = [frame[3] for frame in recording["frames"]]
+    assert ticks[0] == 0 and ticks[-1] <= s.record_steps
+    live = run(name, panel, seed=3, steps=ticks[-1]).readouts()
+    for key, value in recording["frames"][-1][4].items():
+        if not isinstance(value, str):
+            assert value == pytest.approx(live[key], rel=1e-3, abs=1e-3)
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_still_is_an_svg(name, panel):
+    s = run(name, panel)
+    svg = to_svg(s.frame()[0], s.size, "a < b")
+    assert ElementTree.fromstring(svg).tag.endswith("svg") and "nan" not in svg
+    assert len(svg) < 120_000
+
+
+@pytest.mark.parametrize(
+    ("value", "why"),
+    [(float("nan"), "finite"), ("5", "finite"), (True, "finite"), (None, "finite")],
+)
+def test_a_control_refuses_what_is_not_its_kind(value, why):
+    with pytest.raises(ParameterError, match=why):
+        scene("comb").set("n", value)
+
+
+def test_a_control_clips_and_names_its_choices():
+    s = scene("comb")
+    s.set("n", 1e9)
+    assert s.values["n"] == 20
+    with pytest.raises(ParameterError, match="choose one of"):
+        s.set("weights", "<script>")
+    with pytest.raises(ParameterError, match="no control"):
+        s.set("__class__", 1)
+    with pytest.raises(ParameterError, match="whole number"):
+        s.reset(-1)
+    with pytest.raises(ParameterError, match="no panel"):
+        scene("drive", "nowhere")
+    with pytest.raises(ParameterError, match="no explorable"):
+        scene("os.system")
+
+
+def test_host_applies_operations_in_order_and_reports():
+    host = Host()
+    about = json.loads(host.open("k", "comb", None, 7))
+    assert about["name"] == "comb" and about["seed"] == 7
+    drawing, told = host.do("k", '[["set", "n", 8], ["step", 3]]')
+    told = json.loads(told)
+    assert told["ticks"] == 3 and told["values"]["n"] == 8 and drawing.dtype == np.float32
+    for bad in ('[["eval", "1"]]', '[["step", -1]]', '[["step", 1e9]]', '["step"]'):
+        with pytest.raises(ParameterError):
+            host.do("k", bad)
+
+
+def test_pen_broadcasts():
+    pen = Pen()
+    pen.segments("ink", 0, 0, [1, 2], 3)
+    ((op, style, numbers),) = records(pen.array())
+    assert (op, style) == ("segments", "ink")
+    assert numbers.tolist() == [1.5, 0, 0, 0, 0, 1, 2, 3, 3]

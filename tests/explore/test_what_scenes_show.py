@@ -1,0 +1,209 @@
+"""What each scene claims is true: readouts against theory, missions that can be done."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import pfkit as pf
+from pfkit.explore import scene
+from pfkit.explore.banana import energy_distance
+from pfkit.explore.comb import FIVE, WEIGHTS, teeth, wheel
+
+
+@pytest.mark.parametrize("name", list(FIVE))
+def test_teeth_lie_in_the_particle_that_was_picked(name):
+    w = np.array(WEIGHTS["chapter"])
+    edges = np.concatenate(([0.0], np.cumsum(w)))
+    for seed in range(50):
+        picks = FIVE[name](w, np.random.default_rng(seed), 9)
+        at = teeth(name, w, picks, np.random.default_rng(seed))
+        assert np.all((edges[picks] <= at + 1e-12) & (at <= edges[picks + 1] + 1e-12))
+
+
+def test_comb_measures_the_multinomial_variance():
+    s = scene("comb", seed=1)
+    s.set("pace", 200)
+    for _ in range(40):
+        s.step()
+    w = np.array(WEIGHTS["chapter"])
+    assert s.variance("multinomial") == pytest.approx(5 * (w * (1 - w)).sum(), rel=0.05)
+    assert s.variance("systematic") < s.variance("residual") < s.variance("multinomial")
+
+
+def test_comb_with_equal_weights_has_two_schemes_without_luck():
+    s = scene("comb")
+    s.set("weights", "equal")
+    for _ in range(30):
+        s.step()
+    quiet = {name for name in FIVE if s.variance(name) < 1e-12}
+    assert quiet == {"stratified", "systematic", "residual"}
+
+
+def test_wheel_is_biased_and_the_others_are_not():
+    w, rng = np.array(WEIGHTS["chapter"]), np.random.default_rng(0)
+    runs = 20_000
+    copies = sum(np.bincount(wheel(w, rng, 5), minlength=5) for _ in range(runs)) / runs
+    assert copies[0] - 5 * w[0] > 4 * np.sqrt(5 / runs) / 2
+
+
+def test_one_founder_is_left_in_the_end():
+    s = scene("comb", seed=2)
+    for _ in range(300):
+        s.step()
+    assert s.founders == 1 and s.achieved[2]
+
+
+def test_corridor_is_the_bayes_filter():
+    s = scene("corridor", seed=4)
+    s.set("auto", False)
+    s.set("look", True)
+    expected = np.where(s.is_door, 0.9, 0.08) if s.saw else np.where(s.is_door, 0.1, 0.92)
+    assert s.bel == pytest.approx(expected / expected.sum())
+    assert s.readouts()["evidence"] == pytest.approx(expected.mean())
+    assert s.achieved[0]
+
+
+def test_corridor_learns_nothing_from_a_blind_detector():
+    s = scene("corridor", seed=4)
+    s.set("hit", 0.3)
+    s.set("false", 0.3)
+    before = s.bel.copy()
+    for _ in range(12):
+        s.set("look", True)
+    assert s.bel == pytest.approx(before) and s.achieved[1]
+
+
+def test_corridor_is_as_sure_as_it_is_right():
+    """Share of runs whose most likely cell is the robot's equals the belief there (4 SE)."""
+    surprise, right = [], []
+    for seed in range(150):
+        s = scene("corridor", seed=seed)
+        for _ in range(60):
+            s.step()
+        right.append(int(s.bel.argmax()) == s.robot)
+        surprise.append(right[-1] - s.bel.max())
+    assert abs(np.mean(surprise)) < 4 * np.std(surprise) / np.sqrt(150)
+    assert np.mean(right) > 0.3  # by chance: 0.04
+
+
+def test_proposal_predicts_the_ess_it_measures():
+    s = scene("proposal", seed=3)
+    s.set("target", "one")
+    s.set("M", 2000)
+    for sigma in (1.5, 2.5):
+        s.set("sigma", sigma)
+        measured = []
+        for _ in range(20):
+            s.step()
+            measured.append(s.ess)
+        assert np.mean(measured) == pytest.approx(s.predicted(), rel=0.03)
+
+
+def test_proposal_has_no_predicted_ess_when_the_weights_have_no_variance():
+    s = scene("proposal")
+    s.set("target", "one")
+    s.set("sigma", 0.7)
+    assert s.predicted() == 0.0
+    s.set("tails", "student")
+    assert s.predicted() > 0
+
+
+def test_energy_distance_is_zero_for_one_cloud_and_grows_with_a_shift():
+    rng = np.random.default_rng(1)
+    a, b = rng.standard_normal((2, 2, 300))
+    assert energy_distance(a, a) == pytest.approx(0, abs=1e-12)
+    assert energy_distance(a, b + 2) > 10 * abs(energy_distance(a, b))
+
+
+def test_banana_can_be_matched():
+    s = scene("banana", seed=3)
+    for name, value in zip(("a1", "a3", "a4", "a5"), s.hidden_sd, strict=True):
+        s.set(name, float(np.round(value, 2)))
+    s.set("guess", s.hidden)
+    assert s.mismatch < 0.05 and s.achieved[2]
+
+
+@pytest.mark.parametrize("sense", ["both", "range", "bearing"])
+def test_drive_finds_the_robot(sense):
+    found = 0
+    for seed in range(6):
+        s = scene("drive", "localise", seed)
+        s.set("sense", sense)
+        s.set("M", 2000)
+        for _ in range(420):
+            s.step()
+        found += s.error < 0.5
+    assert found >= 4
+
+
+def test_drive_recovers_from_a_kidnap_only_with_fresh_particles():
+    def after_kidnap(fresh):
+        s = scene("drive", "kidnap", 2)
+        s.set("fresh", fresh)
+        for _ in range(60):
+            s.step()
+        s.set("kidnap", True)
+        for _ in range(600):
+            s.step()
+            if s.error < 0.3:
+                return True
+        return False
+
+    assert after_kidnap(5.0)
+    assert not after_kidnap(0.0)
+
+
+def test_likelihood_map_is_the_sensors_likelihood():
+    s = scene("drive", "sensing", 1)
+    log_p, p = s.likelihood_map()
+    assert p.sum() == pytest.approx(1)
+    x0, x1, y0, y1 = s.bounds
+    ny, nx = p.shape
+    j, i = np.unravel_index(int(log_p.argmax()), p.shape)
+    best = np.array([x0 + (i + 0.5) * (x1 - x0) / nx, y0 + (j + 0.5) * (y1 - y0) / ny])
+    ranges = np.hypot(*(s.landmarks - best[:, None]))
+    assert ranges == pytest.approx(np.hypot(*(s.landmarks - s.truth[:2, None])), abs=0.25)
+
+
+def test_square_has_four_copies_that_measure_the_same():
+    s = scene("drive", "symmetry", 1)
+    for pose in s.copies().T:
+        z, here = (s.real.expected(p) for p in (pose, s.truth))
+        assert np.sort(z[0]) == pytest.approx(np.sort(here[0]))
+        assert np.sort(np.cos(z[1])) == pytest.approx(np.sort(np.cos(here[1])))
+
+
+def test_symmetry_counts_hypotheses_that_die():
+    s = scene("drive", "symmetry", 1)
+    for _ in range(300):
+        s.step()
+    assert 1 <= s.readouts()["hypotheses"] < 4
+    assert s.masses().sum() == pytest.approx(1, abs=0.1)
+
+
+def test_switches_take_the_filter_apart():
+    s = scene("drive", "assembly", 1)
+    s.set("do_resample", False)
+    for _ in range(200):
+        s.step()
+    assert s.ess < 3 and s.counts["resampled"] == 0
+    s = scene("drive", "assembly", 1)
+    s.set("do_predict", False)
+    for _ in range(200):
+        s.step()
+    assert np.unique(s.bel.state[0]).size < 20 and s.ess > 10
+
+
+def test_landmarks_can_be_moved_added_and_removed():
+    s = scene("drive", "sensing", 1)
+    s.set("hand", "landmark")
+    s.set("add", True)
+    assert s.landmarks.shape[1] == 3
+    for _ in range(5):
+        s.set("remove", True)
+    assert s.landmarks.shape[1] == 1  # the last one stays
+    x, y = s.landmarks[:, 0]
+    s.set("point", (x, y, 0))
+    s.set("point", (4.0, 4.0, 1))
+    assert s.landmarks[:, 0] == pytest.approx([4, 4]) and isinstance(s.world, pf.LandmarkMap)
