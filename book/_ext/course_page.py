@@ -62,6 +62,11 @@ MENDS = (
     ),
     Mend(re.compile(r'(<summary) aria-label="Toggle hidden content"'), r"\1", expected=False),
     Mend(re.compile(r'<div role="list" (class="citation-list")'), r"<div \1", expected=False),
+    Mend(
+        re.compile(r'<summary>(?=<span class="toctree-toggle")'),
+        '<summary aria-label="Pages of this section">',
+        expected=False,
+    ),
     Mend(re.compile(r'="Color mode"'), '="Colour mode"'),
     Mend(
         re.compile(r'(<table class="[^"]*\bdocutils\b.*?</table>)', re.S),
