@@ -41,6 +41,8 @@ class UnknownLandmarkError(PfkitError):
 
 def as_numbers(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
     """Return `value` as a float array; raise `error` if it does not consist of numbers."""
+    if type(value) is np.ndarray and value.dtype == np.float64:
+        return value  # the common case, inside a filter
     try:
         array = np.asarray(value)
     except ValueError:  # a ragged list

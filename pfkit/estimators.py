@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError, require_fraction
-from pfkit.geometry import circular_mean, wrap
+from pfkit.geometry import wrap
 from pfkit.particles import Particles, normalise, require_particles
 
 
@@ -42,10 +42,16 @@ def mean_pose(bel: Particles) -> NDArray[np.float64]:
         If `bel` is not a particle set.
     """
     w = require_particles(bel).w
-    mean = np.einsum("d...m,...m->d...", bel.state, w)
+    mean = _average(bel.state, w)
     if bel.state.shape[0] >= 3:
-        mean[2] = circular_mean(bel.state[2], w)
+        theta = bel.state[2]
+        mean[2] = np.arctan2(_average(np.sin(theta), w), _average(np.cos(theta), w))
     return mean
+
+
+def _average(values: NDArray[np.float64], w: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Weighted sums over the last axis, as products of a row and a column."""
+    return np.matmul(values[..., None, :], w[..., None])[..., 0, 0]
 
 
 def covariance(bel: Particles) -> NDArray[np.float64]:

@@ -100,7 +100,7 @@ def predict(
             f"the motion model must return states of shape {bel.state.shape}, got "
             f"{np.shape(state)}; one column per particle"
         )
-    return Particles(state, bel.log_w)
+    return Particles.trusted(require_finite("the moved state", state), bel.log_w)
 
 
 def update(
@@ -146,7 +146,7 @@ def update(
             f"got {np.shape(log_likelihood)}; sum over the measurements inside the sensor"
         )
     log_w, log_evidence = normalise(bel.log_w + log_likelihood)
-    return Particles(bel.state, log_w), log_evidence
+    return Particles.trusted(bel.state, log_w), log_evidence
 
 
 def _columns(z: ArrayLike) -> int:
@@ -189,7 +189,7 @@ def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
         state = np.take(bel.state, ancestors, axis=1)
     else:
         state = np.take_along_axis(bel.state, ancestors[None], axis=-1)
-    return Particles(state, equal_log_weights(ancestors.shape))
+    return Particles.trusted(state, equal_log_weights(ancestors.shape))
 
 
 def resample(
@@ -293,7 +293,7 @@ def step(
     ancestors[poor] = _draw(scheme, bel.w[poor], rng, bel.M)
     copies = select(bel, ancestors)
     log_w = np.where(poor[..., None], copies.log_w, bel.log_w)
-    return Particles(copies.state, log_w), Info(log_evidence, ess, poor, ancestors)
+    return Particles.trusted(copies.state, log_w), Info(log_evidence, ess, poor, ancestors)
 
 
 @dataclass(frozen=True)

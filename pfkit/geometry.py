@@ -46,7 +46,11 @@ def wrap(angle: ArrayLike) -> NDArray[np.float64]:
     >>> wrap([0.0, np.pi, -np.pi, 2 * np.pi]).round(6)
     array([0.      , 3.141593, 3.141593, 0.      ])
     """
-    angle = require_finite("angle", angle)
+    return _wrap(require_finite("angle", angle))
+
+
+def _wrap(angle: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`wrap` without the check, for angles that have been checked already."""
     return angle - TWO_PI * np.ceil(angle / TWO_PI - 0.5)
 
 

@@ -72,6 +72,7 @@ class RangeBearing(Sensor):
     bias_phi: float = 0.0
     components: ClassVar[int] = 3
     angles: ClassVar[tuple[int, ...]] = (1,)
+    broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         require_positive("sigma_r", self.sigma_r)
@@ -135,6 +136,7 @@ class Bearing(Sensor):
     bias_phi: float = 0.0
     components: ClassVar[int] = 2
     angles: ClassVar[tuple[int, ...]] = (0,)
+    broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         require_positive("sigma_phi", self.sigma_phi)
@@ -189,6 +191,7 @@ class Range(Sensor):
     bias: float | Array = 0.0
     nu: float = math.inf
     components: ClassVar[int] = 2
+    broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         require_positive("sigma_r", self.sigma_r)

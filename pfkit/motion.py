@@ -40,7 +40,7 @@ from pfkit.errors import (
     require_positive,
     require_rng,
 )
-from pfkit.geometry import between, wrap
+from pfkit.geometry import _wrap, between, wrap
 
 Array = NDArray[np.float64]
 
@@ -95,14 +95,21 @@ def drive_arc(pose: Array, distance: ArrayLike, turn: ArrayLike) -> Array:
     -----
     Source: Probabilistic Robotics, eq. 5.9, with its division by omega removed.
     """
-    x, y, theta = require_components("pose", pose, 3)
-    half = 0.5 * require_finite("turn", turn)
-    chord = require_finite("distance", distance) * np.sinc(half / np.pi)
+    pose, distance = require_components("pose", pose, 3), require_finite("distance", distance)
+    return _arc(pose, distance, require_finite("turn", turn))
+
+
+def _arc(pose: Array, distance: Array, turn: Array) -> Array:
+    """`drive_arc` without the checks, for numbers that have been checked already."""
+    x, y, theta = pose
+    half = 0.5 * turn
+    nonzero = np.where(half == 0, 1e-20, half)  # sin(h) / h is 1 in the limit, and here as well
+    chord = distance * (np.sin(nonzero) / nonzero)
     direction = theta + half
-    end = np.empty((3, *np.broadcast_shapes(np.shape(x), np.shape(chord))))
+    end = np.empty((3, *np.broadcast(x, chord).shape))
     end[0] = x + chord * np.cos(direction)
     end[1] = y + chord * np.sin(direction)
-    end[2] = wrap(direction + half)
+    end[2] = _wrap(direction + half)
     return end
 
 
@@ -146,7 +153,7 @@ class VelocityMotion:
         v, omega, _ = require_components("u", u, 3)
         a1, a2, a3, a4, a5, a6 = self.alpha
         v2, omega2 = v * v, omega * omega
-        return np.stack((a1 * v2 + a2 * omega2, a3 * v2 + a4 * omega2, a5 * v2 + a6 * omega2))
+        return np.array((a1 * v2 + a2 * omega2, a3 * v2 + a4 * omega2, a5 * v2 + a6 * omega2))
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free arc: pose (3, ...), u (3,) -> pose (3, ...)."""
@@ -161,7 +168,7 @@ class VelocityMotion:
         shape = np.broadcast_shapes(pose.shape[1:], u.shape[1:])
         v_hat = v + draw_noise(var_v, shape, rng)
         omega_hat = omega + draw_noise(var_omega, shape, rng)
-        moved = drive_arc(pose, v_hat * dt, omega_hat * dt)
+        moved = _arc(pose, v_hat * dt, omega_hat * dt)
         if self.alpha[4] or self.alpha[5]:
             moved[2] = wrap(moved[2] + dt * draw_noise(var_gamma, shape, rng))
         return moved

@@ -95,6 +95,14 @@ class Particles:
         if np.isneginf(peak).any():
             raise DegenerateWeightsError("every weight is 0: log_w is -inf; draw new particles")
 
+    @classmethod
+    def trusted(cls, state: NDArray[np.float64], log_w: NDArray[np.float64]) -> Particles:
+        """Build a set without the checks, for code that has just made both parts itself."""
+        bel = object.__new__(cls)
+        object.__setattr__(bel, "state", state)
+        object.__setattr__(bel, "log_w", log_w)
+        return bel
+
     @property
     def w(self) -> NDArray[np.float64]:
         """Weights (M,) or (B, M), summing to one over the last axis."""

@@ -32,6 +32,7 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     DegenerateWeightsError,
     ParameterError,
+    PfkitError,
     ShapeError,
     as_numbers,
     require_count,
@@ -55,14 +56,20 @@ def _read(w: ArrayLike, rng: np.random.Generator, n: int | None) -> tuple[Array,
         raise ParameterError(f"weights must be >= 0, got {w.min()}; pass w, not log-weights")
     edges = np.cumsum(w, axis=-1)
     total = edges[..., -1]
-    if not (total > 0).all():
-        raise DegenerateWeightsError("all weights are 0: nothing to copy; check the likelihood")
-    if not ((total > 1e-290) & (total < 1e290)).all():
-        raise ParameterError(
-            f"the sum of weights must lie in 1e-290 to 1e290, got {total.min()} to {total.max()}; "
-            "keep log-weights and let normalise() scale them"
-        )
+    usable = (total > 1e-290) & (total < 1e290)
+    if not usable.all():
+        raise _unusable(total)
     return w, edges, w.shape[-1] if n is None else require_count("n", n)
+
+
+def _unusable(total: Array) -> PfkitError:
+    """What is wrong with sums of weights that cannot be scaled to one."""
+    if not (total > 0).all():
+        return DegenerateWeightsError("all weights are 0: nothing to copy; check the likelihood")
+    return ParameterError(
+        f"the sum of weights must lie in 1e-290 to 1e290, got {total.min()} to {total.max()}; "
+        "keep log-weights and let normalise() scale them"
+    )
 
 
 def _comb(edges: Array, n: int, u: Array) -> Indices:

@@ -50,6 +50,11 @@ class _Wrapper(Sensor):
         """Rows of a measurement that are angles, those of the wrapped sensor."""
         return self.sensor.angles
 
+    @property
+    def broadcasts(self) -> bool:  # type: ignore[override]
+        """Whether several columns can be weighed at once, as in the wrapped sensor."""
+        return self.sensor.broadcasts
+
     def check_state(self, pose: ArrayLike) -> Array:
         """Return a state that the wrapped sensor can read."""
         return self.sensor.check_state(pose)

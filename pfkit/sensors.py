@@ -35,6 +35,7 @@ from pfkit.errors import (
     DataError,
     ParameterError,
     ShapeError,
+    as_numbers,
     require_components,
     require_finite,
     require_positive,
@@ -52,9 +53,29 @@ class SensorModel(Protocol):
 
 
 def log_gaussian(error: ArrayLike, sigma: float) -> Array:
-    r"""Log density of a zero-mean Gaussian: :math:`-e^2/2\sigma^2 - \log(\sigma\sqrt{2\pi})`."""
-    scaled = np.asarray(error) / sigma
-    return -0.5 * scaled * scaled - math.log(sigma * math.sqrt(2 * math.pi))
+    r"""Log density of a zero-mean Gaussian.
+
+    .. math:: \log \mathcal N(e;\, 0, \sigma^2) = -\frac{e^2}{2\sigma^2} - \log(\sigma\sqrt{2\pi})
+
+    Parameters
+    ----------
+    error : array_like, any shape and unit
+    sigma : float, > 0, in the unit of the error
+
+    Returns
+    -------
+    array of the shape of the error
+
+    Raises
+    ------
+    ParameterError
+        If sigma is not positive, or an error is not a number.
+    """
+    _require_scale(sigma)
+    log_p = np.square(as_numbers("error", error))
+    log_p *= -0.5 / sigma**2
+    log_p -= math.log(sigma * math.sqrt(2 * math.pi))
+    return log_p
 
 
 def log_student(error: ArrayLike, sigma: float, nu: float) -> Array:
@@ -64,17 +85,43 @@ def log_student(error: ArrayLike, sigma: float, nu: float) -> Array:
               + \log\frac{\Gamma((\nu+1)/2)}{\Gamma(\nu/2)\,\sigma\sqrt{\pi\nu}}
 
     Its tails are heavy: one wild measurement cannot veto a particle. nu = inf is Gaussian.
+
+    Parameters
+    ----------
+    error : array_like, any shape and unit
+    sigma : float, > 0, in the unit of the error
+    nu : float, > 0
+
+    Returns
+    -------
+    array of the shape of the error
+
+    Raises
+    ------
+    ParameterError
+        If sigma or nu is not positive, or an error is not a number.
     """
+    require_nu(nu)
     if math.isinf(nu):
         return log_gaussian(error, sigma)
-    scaled = np.asarray(error) / sigma
+    _require_scale(sigma)
+    scaled = as_numbers("error", error) / sigma
     constant = math.lgamma((nu + 1) / 2) - math.lgamma(nu / 2) - 0.5 * math.log(math.pi * nu)
     return constant - math.log(sigma) - 0.5 * (nu + 1) * np.log1p(scaled * scaled / nu)
 
 
 def require_nu(nu: float) -> None:
-    if not nu > 0:
-        raise ParameterError(f"nu must be > 0 (inf for a Gaussian), got {nu}")
+    """Raise `ParameterError` unless nu is a number > 0; inf is allowed, and means Gaussian."""
+    if not isinstance(nu, _NUMBER) or not nu > 0:
+        raise ParameterError(f"nu must be > 0 (inf for a Gaussian), got {nu!r}")
+
+
+def _require_scale(sigma: float) -> None:
+    if not isinstance(sigma, _NUMBER) or not 0 < sigma < math.inf:
+        raise ParameterError(f"sigma must be one number > 0, got {sigma!r}; 0 has no density")
+
+
+_NUMBER = (float, int, np.floating, np.integer)
 
 
 def draw_errors(sigma: float, nu: float, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
@@ -84,15 +131,21 @@ def draw_errors(sigma: float, nu: float, shape: tuple[int, ...], rng: np.random.
     return sigma * draws
 
 
+_CACHE = 8192  # numbers in an array that still fits into a processor's first cache
+
+
 class Sensor:
     """Base of all sensors: the density of one measurement, summed over K of them.
 
     A subclass sets `components` and defines ``log_density(zk, pose)`` for one column zk of z.
-    `angles` names the rows of z that are angles, for whoever subtracts measurements.
+    `angles` names the rows of z that are angles, for whoever subtracts measurements. A sensor
+    that sets `broadcasts` promises that its `log_density` takes several columns at once, zk
+    (n, k, 1), and returns (k, ...): for small sets one call for all columns is much faster.
     """
 
     components: ClassVar[int]
     angles: ClassVar[tuple[int, ...]] = ()
+    broadcasts: ClassVar[bool] = False
 
     def check_state(self, pose: ArrayLike) -> Array:
         """Return a pose (3, ...) as a finite array; sensors of other states say which."""
@@ -126,8 +179,15 @@ class Sensor:
         if z.ndim == 1:
             z = z[:, None]
         total = np.zeros(pose.shape[1:])
-        for k in range(z.shape[1]):
-            total += self.log_density(z[:, k], pose)
+        together = max(1, _CACHE // max(1, total.size)) if self.broadcasts else 1
+        if together == 1 or z.shape[1] == 1:
+            for k in range(z.shape[1]):
+                total += self.log_density(z[:, k], pose)
+            return total
+        if z.ndim == 2:
+            z = z.reshape(*z.shape, *(1,) * (pose.ndim - 1))
+        for k in range(0, z.shape[1], together):
+            total += self.log_density(z[:, k : k + together], pose).sum(axis=0)
         return total
 
 
@@ -161,6 +221,7 @@ class Position(Sensor):
     sigma: ArrayLike | None = None
     Sigma: ArrayLike | None = None
     components: ClassVar[int] = 2
+    broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
         if (self.sigma is None) == (self.Sigma is None):
