@@ -40,7 +40,7 @@ from pfkit.resampling import (
     stratified,
     systematic,
 )
-from pfkit.survival import survival
+from pfkit.survival import survival_probability
 from pfkit.triggers import ess_below, every, information, on_information
 from pfkit.genealogy import (
     Genealogy,

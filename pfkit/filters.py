@@ -94,7 +94,7 @@ def predict(
     require_particles(bel)
     require_method("motion", motion, "sample")
     require_rng(rng)
-    state = motion.sample(bel.state, require_finite("u", u), rng)
+    state = motion.sample(bel.state, as_numbers("u", u), rng)
     if np.shape(state) != bel.state.shape:
         raise ShapeError(
             f"the motion model must return states of shape {bel.state.shape}, got "

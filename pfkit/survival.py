@@ -32,7 +32,7 @@ from pfkit.errors import ParameterError, ShapeError, require_count, require_fini
 Array = NDArray[np.float64]
 
 
-def survival(w: ArrayLike, scheme: str, n: int | None = None) -> Array:
+def survival_probability(w: ArrayLike, scheme: str, n: int | None = None) -> Array:
     r"""Probability that each particle leaves at least one copy in one resampling.
 
     .. math:: P(N_m \ge 1)
@@ -61,9 +61,9 @@ def survival(w: ArrayLike, scheme: str, n: int | None = None) -> Array:
 
     Examples
     --------
-    >>> survival([0.5, 0.3, 0.2], "systematic").round(3)
+    >>> survival_probability([0.5, 0.3, 0.2], "systematic").round(3)
     array([1. , 0.9, 0.6])
-    >>> survival([0.5, 0.3, 0.2], "multinomial").round(3)
+    >>> survival_probability([0.5, 0.3, 0.2], "multinomial").round(3)
     array([0.875, 0.657, 0.488])
     """
     w = require_finite("w", w)

@@ -18,7 +18,7 @@ def test_the_formula_agrees_with_counting(name, n):
     runs = 8_000
     ancestors = pf.SCHEMES[name](np.tile(W, (runs, 1)), np.random.default_rng(2), n)
     alive = np.array([(ancestors == m).any(axis=1).mean() for m in range(W.size)])
-    chance = pf.survival(W, name, n)
+    chance = pf.survival_probability(W, name, n)
     sure = (chance == 0) | (chance == 1)
     np.testing.assert_array_equal(alive[sure], chance[sure])
     z = (alive - chance)[~sure] / np.sqrt(chance * (1 - chance) / runs)[~sure]
@@ -30,7 +30,7 @@ def test_the_formula_agrees_with_counting(name, n):
     n=st.integers(1, 40),
 )
 def test_no_scheme_beats_systematic_and_none_falls_below_multinomial(w, n):
-    chance = {name: pf.survival(w, name, n) for name in pf.SCHEMES}
+    chance = {name: pf.survival_probability(w, name, n) for name in pf.SCHEMES}
     expected = n * w / w.sum()
     for values in chance.values():
         assert (values >= 0).all() and (values <= np.minimum(1, expected) + 1e-9).all()
@@ -41,10 +41,12 @@ def test_no_scheme_beats_systematic_and_none_falls_below_multinomial(w, n):
 
 def test_equal_weights():
     w = np.full(1000, 1e-3)
-    assert pf.survival(w, "multinomial") == pytest.approx(1 - np.exp(-1), abs=2e-4)
+    assert pf.survival_probability(w, "multinomial") == pytest.approx(1 - np.exp(-1), abs=2e-4)
     for name in ("residual", "stratified", "systematic"):
-        assert pf.survival(w, name) == pytest.approx(1.0, abs=1e-9)
+        assert pf.survival_probability(w, name) == pytest.approx(1.0, abs=1e-9)
 
 
 def test_whole_expectations_leave_nothing_to_chance():
-    np.testing.assert_array_equal(pf.survival([1, 2, 0, 1], "residual", 4), [1, 1, 0, 1])
+    np.testing.assert_array_equal(
+        pf.survival_probability([1, 2, 0, 1], "residual", 4), [1, 1, 0, 1]
+    )
