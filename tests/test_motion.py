@@ -134,8 +134,13 @@ def midpoints(low, high, n):
 
 @pytest.mark.parametrize(
     "u, reach",
-    [((1.0, 0.5, 0.8), 2.0), ((0.1, 0.8, 0.5), 0.5), ((-0.6, -0.4, 1.0), 1.5)],
-    ids=["driving", "nearly turning on the spot", "reversing"],
+    [
+        ((1.0, 0.5, 0.8), 2.0),
+        ((0.1, 0.8, 0.5), 0.5),
+        ((-0.6, -0.4, 1.0), 1.5),
+        ((0.8, 3.0, 1.0), 1.5),
+    ],
+    ids=["driving", "nearly turning on the spot", "reversing", "half a circle"],
 )
 def test_the_density_integrates_to_one(u, reach):
     total = polar_integral(
