@@ -84,7 +84,7 @@ def kde(bel: Particles, points: ArrayLike, bandwidth: ArrayLike | None = None) -
     h = silverman_bandwidth(bel) if bandwidth is None else require_finite("bandwidth", bandwidth)
     if h.shape != (D,):
         raise ShapeError(f"bandwidth must hold one width per component ({D}), got shape {h.shape}")
-    if bandwidth is None and not (h > 0).all():
+    if bandwidth is None and not (h > 1e-9 * np.abs(bel.state).max()).all():  # only rounding
         raise ParameterError(f"all particles agree in a component (widths {h}); give a bandwidth")
     require_positive("bandwidth", h)
     flat, w = points.reshape(D, -1), bel.w

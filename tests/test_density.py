@@ -38,6 +38,15 @@ def test_silverman_on_a_gaussian():
     )
 
 
+def test_silverman_counts_effective_particles():
+    """Giving half of the particles no weight is the same as leaving them out."""
+    half = rng().normal(size=(2, 300))
+    state = np.hstack((half, rng(1).normal(size=(2, 300)) + 9))
+    weighted = pf.from_weights(state, np.repeat([1.0, 0.0], 300))
+    ours, expected = (pf.silverman_bandwidth(b) for b in (weighted, pf.from_weights(half)))
+    np.testing.assert_allclose(ours, expected)
+
+
 def test_kde_approaches_the_true_density():
     bel = pf.from_weights(rng().normal(size=(2, 20_000)))
     at = np.array([[0.0, 1.0], [0.0, -0.5]])

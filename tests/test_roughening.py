@@ -33,7 +33,14 @@ def test_regularisation_has_the_clouds_shape():
     bel = pf.from_weights(bel.state + np.array([0.0, 0.5, 0.0])[:, None] * bel.state[0])
     noise = pf.pose_error(pf.regularise(bel, rng()).state, bel.state)
     h = (4 / 5) ** (1 / 7) * 20_000 ** (-1 / 7)
-    np.testing.assert_allclose(np.cov(noise), h**2 * pf.covariance(bel), atol=0.03 * h**2 * 4)
+    np.testing.assert_allclose(np.cov(noise), h**2 * pf.covariance(bel), rtol=0.04, atol=2e-3)
+
+
+def test_bandwidth_in_one_dimension_is_exact():
+    bel = pf.from_weights(rng(1).normal(size=(1, 500)))
+    noise = pf.regularise(bel, rng(2)).state - bel.state
+    scale = noise / rng(2).standard_normal((1, 500)) / np.sqrt(pf.covariance(bel)[0, 0])
+    np.testing.assert_allclose(np.abs(scale), (4 / 3) ** (1 / 5) * 500 ** (-1 / 5), rtol=1e-6)
 
 
 @pytest.mark.parametrize("remedy", [pf.roughen, pf.regularise])
