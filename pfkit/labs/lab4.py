@@ -9,11 +9,23 @@ from pfkit.labs.lab4_outliers import FALSE, auc
 from pfkit.labs.lab4_outliers import QUESTIONS as OUTLIERS
 from pfkit.labs.lab4_tuning import CIRCLE, FILM, model_of, start_of
 from pfkit.labs.lab4_tuning import QUESTIONS as TUNING
+from pfkit.labs.long_runs import LONG_RUNS
 from pfkit.labs.target import AREA, anywhere, around, target_log, track
 
 LAB = Lab("lab4", "Lab 4: tuning and outliers", (*TUNING, *OUTLIERS))
 check, use, predict, answer, summary, save, load = LAB.verbs()
 film, circle, half_false = FILM, CIRCLE, FALSE
+
+
+def long_run(question: str) -> None:
+    """Print what the full film says: 688 frames, 1,000 particles, median (sd) of ten seeds."""
+    table = LONG_RUNS[question]
+    print(f"{table['what']}: median over ten seeds (sd)")
+    for value, cells in table["rows"]:
+        shown = f"{value:g}" if isinstance(value, float | int) else value
+        told = "; ".join(f"{name} {mid:g} ({sd:g})" for name, (mid, sd) in cells.items())
+        print(f"  {shown}: {told}")
+
 
 __all__ = [
     "AREA",
@@ -27,6 +39,7 @@ __all__ = [
     "film",
     "half_false",
     "load",
+    "long_run",
     "model_of",
     "predict",
     "save",

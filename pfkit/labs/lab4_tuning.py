@@ -38,7 +38,7 @@ def start_of(name, log, shape, rng):
 
 def sensor_sweep(variance, rng, runs):
     """Mean error of frames 50 to 200, one per run, if the sensor is believed to have it."""
-    bel = around(HOME, (runs, 300), rng, sigma=20.0)
+    bel = around(HOME, (runs, 200), rng, sigma=20.0)
     motion, sensor = pf.FixedTarget(1.4), pf.Position(np.sqrt(variance))
     return track(FILM[:200], bel, motion, sensor, rng).error[50:].mean(axis=0)
 
@@ -88,10 +88,10 @@ Q9 = Question(
             title="Error against the believed sensor variance",
             points=2,
             claim="understating by 100 or more copies the measurement (1.0 to 1.5 px); the smallest "
-            "of the five errors is at 100 px^2, below .6 px; at 10,000 it rises again",
+            "of the five errors is at 100 px^2, below .7 px; at 10,000 it rises again",
             test="medians over runs",
-            runs=8,
-            margin="",
+            runs=12,
+            margin="1.20 px (sd .005); .454 (.015) against .7; 1.22 (.13) against .45: 5.8 standard errors",
             measure=_sensor,
             reference=sensor_sweep,
             hints=(
@@ -108,15 +108,15 @@ Q9 = Question(
                     ),
                 ),
                 Property(
-                    "at 100 the error is the smallest, below .6 px",
+                    "at 100 the error is the smallest, below .7 px",
                     lambda x: (
-                        (_column(x).argmin() == 3 and _column(x)[3] < 0.6)
+                        (_column(x).argmin() == 3 and _column(x)[3] < 0.7)
                         or f"{_column(x).round(2)} px"
                     ),
                 ),
                 Property(
-                    "at 10,000 it is at least .15 px above that",
-                    lambda x: _column(x)[4] > _column(x)[3] + 0.15 or f"{_column(x).round(2)} px",
+                    "at 10,000 it is larger again",
+                    lambda x: _column(x)[4] > _column(x)[3] or f"{_column(x).round(2)} px",
                 ),
             ),
             misconceptions=(
@@ -129,7 +129,7 @@ Q9 = Question(
                         "pf.Position(np.sqrt(variance)).",
                     ),
                     lambda v, rng, runs: sensor_sweep(v**2, rng, runs),
-                    lambda x: _column(x)[3] > 0.6 and _column(x)[0] < 5,
+                    lambda x: _column(x)[3] > 0.7 and _column(x)[0] < 5,
                 ),
                 Misconception(
                     "linear-weights",
@@ -169,7 +169,7 @@ Q9 = Question(
 
 def motion_sweep(variance, rng, runs):
     """Mean error of all 400 frames, and of the last 100: two rows, one number per run."""
-    bel = around(HOME, (runs, 200), rng, sigma=60.0)
+    bel = around(HOME, (runs, 200), rng, sigma=100.0)
     motion, sensor = pf.FixedTarget(np.sqrt(variance)), pf.Position(5.0)
     error = track(FILM[:400], bel, motion, sensor, rng).error
     return np.array([error.mean(axis=0), error[-100:].mean(axis=0)])
@@ -207,7 +207,7 @@ Q10 = Question(
             "mean of the last hundred at .01",
             test="smallest median over runs",
             runs=10,
-            margin="",
+            margin="2.4 px (sd .6) against .58; .19 (.03) against .48: 5.6 sd of the logarithm",
             measure=_motion,
             reference=motion_sweep,
             hints=(
@@ -299,7 +299,7 @@ Q11 = Question(
             ".01 or less",
             test="smallest median over runs, per model",
             runs=6,
-            margin="",
+            margin="11.05 px (sd .10) against 12.44 for fixed; line and circle gain 3 px: 12 sd",
             measure=_ratios,
             reference=ratio_sweep,
             hints=(
@@ -382,7 +382,7 @@ Q12 = Question(
             "the circle with 20 particles beats the line with 160, which beats fixed with 160",
             test="medians over runs, in this order, with gaps of at least 1 px",
             runs=20,
-            margin="",
+            margin="gaps 2.8 px (sd .32) and 4.0 (.10) against 1; gain 1.1 (.16) against 2: 5.6 sd",
             measure=_sizes,
             reference=error_with,
             hints=(

@@ -4,10 +4,10 @@ import time
 
 import pytest
 
-from pfkit.labs import Choice, Code, Experiment, Numeric, Prediction, Text, lab3
+from pfkit.labs import Choice, Code, Experiment, Numeric, Prediction, Text, lab3, lab4
 from pfkit.labs.mutants import MUTANTS
 
-LABS = {"lab3": lab3.LAB}
+LABS = {"lab3": lab3.LAB, "lab4": lab4.LAB}
 ITEMS = [(lab, i) for lab in LABS for i in LABS[lab].items.values()]
 MISTAKES = [(lab, i, m) for lab, i in ITEMS for m in i.misconceptions]
 

@@ -1,0 +1,267 @@
+# ruff: noqa
+# mypy: ignore-errors
+"""Solutions to lab 3. One block per item; `# %% id` names the answer cell it belongs to.
+
+The markers BEGIN SOLUTION and END SOLUTION are those of otter-grader.
+"""
+
+# %% p1a
+p1a = "c"
+
+# %% p1b
+p1b = 0.75, 0.75**4, 0.75**10
+
+# %% p2a
+p2a = 0.5 / 0.2, 0.3 / 0.3, 0.2 / 0.5
+
+# %% p2b
+def estimate(values, target, proposal):
+    """Mean under the target; three arrays of one length."""
+    # BEGIN SOLUTION
+    w = target / proposal
+    return np.sum(w * values) / np.sum(w)
+    # END SOLUTION
+
+# %% p2c
+p2c = "b"
+
+# %% p3a
+def deprived(M, rng, runs):
+    """One True or False per run: is nobody within 30 px of the truth?"""
+    # BEGIN SOLUTION
+    bel = lab.anywhere((runs, M), rng)
+    run = lab.track(lab.film[:10], bel, pf.FixedTarget(1.0), pf.Position(10.0), rng)
+    x, y = run.bel.state
+    tx, ty = lab.film.truth[:2, 9]
+    return (np.hypot(x - tx, y - ty) > 30).all(axis=-1)
+    # END SOLUTION
+
+# %% p3b
+p3b = "d"
+
+# %% p3c
+p3c = (
+    "No particle is near the truth, and resampling only copies what is there. "
+    "The cloud is narrow all the same, so the filter looks sure while it is wrong."
+)
+
+# %% p4a
+p4a = ("c", 80)
+
+# %% p4b
+def ess_history(resample, rng, runs):
+    """ESS before each decision to resample: shape (50, runs)."""
+    # BEGIN SOLUTION
+    bel = lab.around(lab.film.start[:2], (runs, 1000), rng, sigma=5.0)
+    scheme = pf.systematic if resample else None
+    run = lab.track(lab.film[:50], bel, pf.FixedTarget(1.0), pf.Position(3.0), rng, scheme=scheme)
+    return run.ess
+    # END SOLUTION
+
+# %% p5a
+def bad_for_the_mean(rng):
+    """A one-dimensional array of samples."""
+    # BEGIN SOLUTION
+    return np.concatenate([rng.normal(-10, 1, 300), rng.normal(10, 1, 300)])
+    # END SOLUTION
+
+# %% p5b
+def circular_mean(theta, w):
+    """Mean direction of angles theta (M,) in radians with weights w (M,)."""
+    # BEGIN SOLUTION
+    return np.arctan2(np.sum(w * np.sin(theta)), np.sum(w * np.cos(theta)))
+    # END SOLUTION
+
+# %% p5c
+p5c = "a"
+
+# %% p6a
+def kde(x, samples, h):
+    """Density at each x: shape (len(x),)."""
+    # BEGIN SOLUTION
+    d = (x[:, None] - samples[None, :]) / h
+    return np.mean(np.exp(-0.5 * d**2) / (np.sqrt(2 * np.pi) * h), axis=1)
+    # END SOLUTION
+
+# %% p6b
+def fit_scores(train, test):
+    """Mean log density of test: Gaussian, histogram, KDE."""
+    # BEGIN SOLUTION
+    mu, sd = train.mean(), train.std()
+    gaussian = -0.5 * ((test - mu) / sd) ** 2 - np.log(sd * np.sqrt(2 * np.pi))
+    edges = np.linspace(-15, 15, 31)
+    counts = np.histogram(train, edges)[0] + 0.5
+    height = counts / counts.sum() / np.diff(edges)
+    cell = np.clip(np.searchsorted(edges, test, side="right") - 1, 0, 29)
+    return gaussian.mean(), np.log(height[cell]).mean(), np.log(kde(test, train, 0.6)).mean()
+    # END SOLUTION
+
+# %% p7a
+def copies(scheme, w, rng, runs):
+    """How many copies each particle got: whole numbers, shape (runs, M)."""
+    # BEGIN SOLUTION
+    return np.array([np.bincount(scheme(w, rng), minlength=len(w)) for _ in range(runs)])
+    # END SOLUTION
+
+# %% p7b
+def final_error(threshold, rng, runs):
+    """Error in x of the last estimate, px: shape (runs,)."""
+    # BEGIN SOLUTION
+    bel = lab.around(lab.film.start[:2], (runs, 100), rng, sigma=20.0)
+    motion, sensor = pf.FixedTarget(0.0), pf.Position(300.0)
+    for t, u, z, truth in lab.film[:50]:
+        bel, info = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
+    return pf.mean_pose(bel)[0] - truth[0]
+    # END SOLUTION
+
+# %% p7c
+p7c = "c"
+
+# %% p8a
+a = 2 / (9 * 99)
+p8a = 99 / (2 * 0.05) * (1 - a + np.sqrt(a) * 2.326) ** 3
+
+# %% p8b
+def success(side, M, rng, runs):
+    """One True or False per run: is somebody within 30 px?"""
+    # BEGIN SOLUTION
+    x, y = side * (rng.random((2, runs, M)) - 0.5)
+    return (np.hypot(x, y) < 30).any(axis=-1)
+    # END SOLUTION
+
+# %% p8c
+p8c = "b"
+
+# %% q1a
+q1a = "b"
+
+# %% q1b
+def follow(D, rng, runs):
+    """Errors in px, shape (300, runs), with a state of D = 2 or 3 components."""
+    # BEGIN SOLUTION
+    start = lab.line.start + np.array([0, 0, np.deg2rad(20)])
+    motion = pf.HeadingTarget(0.1, heading=start[2]) if D == 2 else pf.LineTarget(0.1, 0.02)
+    bel = lab.around(start[:D], (runs, 200), rng)
+    return lab.track(lab.line[:300], bel, motion, pf.Position(20.0), rng).error
+    # END SOLUTION
+
+# %% q2a
+q2a = 2.0 / (2 * np.pi / 688)
+
+# %% q2b
+q2b = "c"
+
+# %% q2c
+def circle_mean(state, dt):
+    """State (5, ...) after dt: the position moves along theta, then theta turns."""
+    # BEGIN SOLUTION
+    x, y, theta, v, omega = state
+    x, y = x + v * dt * np.cos(theta), y + v * dt * np.sin(theta)
+    return np.stack([x, y, pf.wrap(theta + omega * dt), v, omega])
+    # END SOLUTION
+
+# %% q3a
+q3a = "a"
+
+# %% q3b
+q3b = "d"
+
+# %% q3c
+def log_likelihood(z, state, sigma):
+    """log p(z | x) at every particle: z (2,), state (2, M), sigma in px; result (M,)."""
+    # BEGIN SOLUTION
+    dx, dy = z[0] - state[0], z[1] - state[1]
+    return -(dx**2 + dy**2) / (2 * sigma**2) - np.log(2 * np.pi * sigma**2)
+    # END SOLUTION
+
+# %% q4a
+q4a = 5, 5, 1, 2
+
+# %% q4b
+def systematic(w, rng):
+    """Ancestor indices, M whole numbers; w (M,) sums to one."""
+    # BEGIN SOLUTION
+    M = len(w)
+    teeth = (np.arange(M) + rng.random()) / M
+    return np.minimum(np.searchsorted(np.cumsum(w), teeth), M - 1)
+    # END SOLUTION
+
+# %% q4c
+def residual(w, rng):
+    """Ancestor indices, M whole numbers, in any order."""
+    # BEGIN SOLUTION
+    M = len(w)
+    copies = np.floor(M * w + 1e-12).astype(int)
+    rest = np.maximum(M * w - copies, 0)
+    drawn = rng.choice(M, M - copies.sum(), p=rest / rest.sum())
+    return np.concatenate([np.repeat(np.arange(M), copies), drawn])
+    # END SOLUTION
+
+# %% q4d
+def select(state, w, ancestors):
+    """New state (2, n) and new weights (n,) after resampling."""
+    # BEGIN SOLUTION
+    return state[:, ancestors], np.full(len(ancestors), 1 / len(ancestors))
+    # END SOLUTION
+
+# %% q5a
+q5a = 1 - (1 - 0.012) ** 100, 1 - (1 - 0.005) ** 100, 1, 0.5
+
+# %% q5b
+def survival(w, M):
+    """Probability to survive: (multinomial, systematic)."""
+    # BEGIN SOLUTION
+    return 1 - (1 - w) ** M, min(1, M * w)
+    # END SOLUTION
+
+# %% q5c
+def survived(scheme, w, rng, runs):
+    """One True or False per run."""
+    # BEGIN SOLUTION
+    weights = np.full(100, (1 - w) / 99)
+    weights[0] = w
+    return np.array([0 in scheme(weights, rng) for _ in range(runs)])
+    # END SOLUTION
+
+# %% q6a
+q6a = "c"
+
+# %% q6b
+def diffuse(state, sigma, rng):
+    """State (2, M) plus noise of sd sigma (px) on x and y of every particle."""
+    # BEGIN SOLUTION
+    return state + sigma * rng.standard_normal(state.shape)
+    # END SOLUTION
+
+# %% q7a
+q7a = ("b", 70)
+
+# %% q7b
+def collapse(sigma, rng, runs):
+    """Distinct particles and last ESS: shape (2, runs)."""
+    # BEGIN SOLUTION
+    bel = lab.around(lab.film.start[:2], (runs, 100), rng, sigma=20.0)
+    run = lab.track(lab.film[:400], bel, pf.FixedTarget(sigma), pf.Position(3.0), rng)
+    distinct = [len(np.unique(x)) for x in run.bel.state[0]]
+    return np.array([distinct, run.ess[-1]])
+    # END SOLUTION
+
+# %% q7c
+q7c = "a"
+
+# %% q8a
+q8a = ("b", 60)
+
+# %% q8b
+def three_filters(rng, runs):
+    """Mean errors in px of A, B, C: shape (3, runs)."""
+    # BEGIN SOLUTION
+    rows = []
+    for options in ({"scheme": None, "weighted": False}, {"scheme": None}, {}):
+        bel = lab.anywhere((runs, 300), rng)
+        run = lab.track(
+            lab.film[:200], bel, pf.FixedTarget(1.4), pf.Position(3.0), rng, **options
+        )
+        rows.append(run.error[100:].mean(axis=0))
+    return np.array(rows)
+    # END SOLUTION
