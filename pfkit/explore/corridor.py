@@ -16,7 +16,13 @@ from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
 
 CELLS = 24
-DOORS = {"five": (2, 5, 6, 12, 19), "three": (3, 6, 15), "even": (2, 8, 14, 20), "one": (9,), "none": ()}
+DOORS = {
+    "five": (2, 5, 6, 12, 19),
+    "three": (3, 6, 15),
+    "even": (2, 8, 14, 20),
+    "one": (9,),
+    "none": (),
+}
 
 
 class Corridor(Scene):
@@ -76,8 +82,9 @@ class Corridor(Scene):
             "doors",
             "Doors",
             "choice",
-            "three",
+            "five",
             choices=(
+                ("five", "five"),
                 ("three", "three"),
                 ("even", "four, evenly"),
                 ("one", "one"),

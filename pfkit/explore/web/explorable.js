@@ -272,11 +272,11 @@
     tell(report) {
       for (const [name, value] of Object.entries(report.readouts)) {
         if (!this.cells[name]) {
-          const dd = el("dd");
+          const number = el("span", {});
           const unit = this.about.units[name];
-          this.readouts.append(el("div", {}, el("dt", {}, name), dd,
-            unit ? el("span", { class: "pf-unit" }, unit) : null));
-          this.cells[name] = dd;
+          this.readouts.append(el("div", {}, el("dt", {}, name), el("dd", {}, number,
+            unit ? el("span", { class: "pf-unit" }, unit) : null)));
+          this.cells[name] = number;
         }
         const text = tidy(value);
         if (this.cells[name].textContent !== text) this.cells[name].textContent = text;
@@ -321,6 +321,7 @@
       this.busy = true;
       const operations = this.pending;
       this.pending = [];
+      operations.forEach((operation) => this.note(operation));
       if (n) operations.push(["step", n]);
       try {
         const answer = await this.engine.run(this.key, operations);
@@ -396,17 +397,13 @@
       this.seed = seed;
       this.seedInput.value = seed;
       this.problem.hidden = true;
-      this.history = [];
-      this.initial = { ...this.values };
-      if (this.mode === "broken") {
-        this.mode = "idle";
-        this.ticks = 0;
-        return this.touch();
-      }
       if (this.mode === "live") {
         this.pending = [["reset", seed]];
         return;
       }
+      if (this.mode === "broken") this.mode = "idle";
+      this.history = [];
+      this.initial = { ...this.values };
       this.ticks = 0;
       await this.touch(0);
     }
@@ -419,7 +416,6 @@
         this.touch();
         return;
       }
-      this.note(spec, value);
       const last = this.pending[this.pending.length - 1];
       if (last && last[0] === "set" && last[1] === name && spec.kind === "range") last[2] = value;
       else if (last && last[1] === name && spec.kind === "point" && last[2][2] === 1 && value[2] === 1) {
@@ -427,14 +423,15 @@
       } else this.pending.push(["set", name, value]);
     }
 
-    /* Remember what was done when, so that a link can repeat it. */
-    note(spec, value) {
-      if (!spec.live) {
+    /* Remember what was done at which tick, so that a link can repeat it. What restarts a run also
+       starts its history. */
+    note([kind, name, value]) {
+      const spec = this.about.controls.find((c) => c.name === name);
+      if (kind === "reset" || (kind === "set" && spec && !spec.live)) {
         this.history = [];
         this.initial = { ...this.values };
-        return;
-      }
-      this.history.push([this.ticks, spec.name, value]);
+        this.ticks = 0;
+      } else if (kind === "set") this.history.push([this.ticks, name, value]);
     }
 
     keydown(e) {
@@ -519,9 +516,8 @@
         const answer = await this.engine.run(this.key, operations);
         this.mode = "live";
         this.root.dataset.mode = "live";
-        for (const [, name, value] of this.waiting || []) {
-          this.note(this.about.controls.find((c) => c.name === name), value);
-        }
+        this.ticks = ticks;
+        (this.waiting || []).forEach((operation) => this.note(operation));
         this.waiting = null;
         this.accept(answer);
         if (first.length) {

@@ -1,0 +1,195 @@
+"""A small book with every explorable and a lab, built by the book's own extension.
+
+It does not depend on the chapters, so that a page under construction breaks no test here. What
+computes comes from tools/live/build.py. Without it or without a browser these tests are skipped,
+with the reason; in CI that is a failure.
+"""
+
+from __future__ import annotations
+
+import importlib.util
+import os
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+SITE = ROOT / ".cache" / "live" / "site"
+
+
+def _load(name: str, path: Path):
+    """A module by its path: two test folders may both have a conftest, or a helper, of one name."""
+    spec = importlib.util.spec_from_file_location(name, path)
+    module = importlib.util.module_from_spec(spec)
+    sys.modules[name] = module
+    spec.loader.exec_module(module)
+    return module
+
+
+browser = _load("book_browser", ROOT / "tests" / "book" / "browser.py")
+
+CONF = """
+import sys
+sys.path.insert(0, {extensions!r})
+extensions = ["myst_nb", "live_page"]
+html_theme, html_title, root_doc = "sphinx_book_theme", "A small book", "index"
+nb_execution_mode, nb_ipywidgets_js = "off", {{}}
+html_static_path = {static!r}
+mathjax_path = "mathjax/tex-chtml-full.js"
+suppress_warnings = ["myst.domains"]
+myst_enable_extensions = ["dollarmath", "amsmath"]
+"""
+SCENES = """# Explorables
+
+```{explorable} drive
+:panel: localise
+:seed: 3
+```
+
+```{explorable} comb
+:seed: 7
+:alt: One bar of weights and five rows of teeth.
+
+1. Watch **ten** draws.
+2. Choose equal weights.
+3. Follow the tree.
+```
+"""
+LANGUAGE = {"language_info": {"name": "python", "pygments_lexer": "ipython3"}}
+PAGES = {
+    "index.md": "# Home\n\n```{toctree}\nscenes\nplain\nlab\n```\n",
+    "scenes.md": SCENES,
+    "plain.md": "# Plain\n\nNothing lives here.\n",
+}
+
+
+def require(reason: str) -> None:
+    """Skip, or fail where everything must be there."""
+    if os.environ.get("CI"):
+        pytest.fail(f"must run in CI: {reason}")
+    pytest.skip(reason)
+
+
+def lab_notebook() -> str:
+    """A notebook of three questions of lab 3 and two cells that only this test has."""
+    import nbformat
+
+    cell, text = nbformat.v4.new_code_cell, nbformat.v4.new_markdown_cell
+
+    def pair(item: str, stub: str, name: str, verb: str = "check"):
+        return [
+            cell(stub, metadata={"answer": item}),
+            cell(f'lab.{verb}("{item}", {name})', metadata={"check": item}),
+        ]
+
+    cells = [
+        text("# A lab"),
+        cell("import matplotlib.pyplot as plt\nimport numpy as np\nimport pfkit as pf\n"
+             "from pfkit.labs import lab3 as lab"),
+        *pair("p1a", "p1a = ...", "p1a"),
+        *pair("p4a", "p4a = ...", "p4a", "predict"),
+        *pair("p5b", 'def circular_mean(theta, w):\n    """Mean direction."""\n    ...',
+              "circular_mean"),
+        cell('circular_mean = lab.use("p5b", circular_mean)'),
+        cell("print(circular_mean(np.array([3.1, -3.1]), np.array([0.5, 0.5])))"),
+    ]  # fmt: skip
+    for number, one in enumerate(cells):
+        one["id"] = f"c{number}"
+    return nbformat.writes(nbformat.v4.new_notebook(cells=cells, metadata=LANGUAGE))
+
+
+@pytest.fixture(scope="session")
+def site(tmp_path_factory) -> Path:
+    """The built small book."""
+    done = subprocess.run(
+        [sys.executable, ROOT / "tools" / "live" / "build.py"], capture_output=True, text=True
+    )
+    if not (SITE / "manifest.json").exists():
+        require(f"Python for the page could not be built: {done.stdout} {done.stderr}")
+    source = tmp_path_factory.mktemp("small_book")
+    static = ROOT / ".cache" / "static"
+    conf = CONF.format(
+        extensions=str(ROOT / "book" / "_ext"), static=[str(static)] if static.exists() else []
+    )
+    for name, body in {**PAGES, "conf.py": conf, "lab.ipynb": lab_notebook()}.items():
+        (source / name).write_text(body, encoding="utf-8")
+    out = source / "_build"
+    built = subprocess.run(
+        [sys.executable, "-m", "sphinx", "-q", "-W", "-b", "html", source, out],
+        capture_output=True,
+        text=True,
+    )
+    assert built.returncode == 0, built.stderr[-3000:]
+    return out
+
+
+@pytest.fixture(scope="session")
+def chromium():
+    """One browser for all tests here."""
+    program = browser.find_browser()
+    if program is None:
+        require("no Chromium on this machine (apt install chromium, or set PFKIT_BROWSER)")
+    from playwright.sync_api import sync_playwright
+
+    with sync_playwright() as playwright:
+        running = playwright.chromium.launch(executable_path=program, args=browser.FLAGS)
+        yield running
+        running.close()
+
+
+@pytest.fixture(scope="session")
+def address(site):
+    """The small book over http."""
+    with browser.served(site) as where:
+        yield where
+
+
+class Page:
+    """A tab that notes script errors and requests that leave the book."""
+
+    def __init__(self, context, base: str, page: str):
+        self.tab, self.base = context.new_page(), base
+        self.errors: list[str] = []
+        self.requests: list[str] = []
+        self.tab.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.tab.on("request", lambda request: self.requests.append(request.url))
+        self.tab.on("dialog", lambda dialog: (self.errors.append("dialog"), dialog.dismiss()))
+        self.tab.goto(base + page)
+
+    def outside(self) -> list[str]:
+        return [u for u in self.requests if not u.startswith((self.base, "data:", "blob:"))]
+
+    def explorable(self, number: int = 0):
+        """Scroll to an explorable and wait until it is more than a still."""
+        self.tab.locator(".pf-explorable").nth(number).scroll_into_view_if_needed()
+        at = f"document.querySelectorAll('.pf-explorable')[{number}]"
+        self.tab.wait_for_function(f"{at}.pfExplorable")
+        return at + ".pfExplorable"
+
+    def live(self, number: int = 0) -> str:
+        """Bring an explorable to life; returns the script that names it."""
+        x = self.explorable(number)
+        self.tab.evaluate(f"{x}.touch()")
+        self.tab.wait_for_function(f"{x}.mode === 'live'", timeout=90_000)
+        return x
+
+
+@pytest.fixture(scope="session")
+def open_page(chromium, address):
+    """Open a page of the small book: open_page("scenes.html", file=False, **context options)."""
+    contexts = []
+
+    def open_it(page: str, base: str = address, init: str = "", **options) -> Page:
+        context = chromium.new_context(
+            viewport={"width": options.pop("width", 1280), "height": 900}, **options
+        )
+        if init:
+            context.add_init_script(init)
+        contexts.append(context)
+        return Page(context, base, page)
+
+    yield open_it
+    for context in contexts:
+        context.close()
