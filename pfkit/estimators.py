@@ -72,7 +72,7 @@ def covariance(bel: Particles) -> NDArray[np.float64]:
     ParameterError
         If `bel` is not a particle set.
     """
-    deviation = bel.state - mean_pose(bel)[..., None]
+    deviation = require_particles(bel).state - mean_pose(bel)[..., None]
     if bel.state.shape[0] >= 3:
         deviation[2] = wrap(deviation[2])
     return np.einsum("i...m,j...m,...m->ij...", deviation, deviation, bel.w)
