@@ -6,6 +6,11 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 
+def rng_of(seed: int) -> np.random.Generator:
+    """A fresh generator: checks that must say the same each time use fixed seeds."""
+    return np.random.default_rng(seed)
+
+
 def z_of_mean(x: ArrayLike, mu: float) -> float:
     """How many standard errors the mean of x lies above mu."""
     x = np.asarray(x, dtype=float)

@@ -5,15 +5,26 @@ P1 to P8 prepare; Q1 to Q8 run a filter on a target in an image. The notebook is
 """
 
 from pfkit.labs.lab import Lab
-from pfkit.labs.lab3_preparation import FILM
-from pfkit.labs.lab3_preparation import QUESTIONS as PREPARATION
-from pfkit.labs.lab3_target import LINE
-from pfkit.labs.lab3_target import QUESTIONS as TARGET
+from pfkit.labs.lab3 import (
+    ablations,
+    deprivation,
+    likelihood,
+    motion_models,
+    noise,
+    resamplers,
+    sample_variance,
+    summaries,
+    weights,
+)
 from pfkit.labs.target import anywhere, around, target_log, track
 
-LAB = Lab("lab3", "Lab 3: the particle filter", (*PREPARATION, *TARGET))
+PARTS = (
+    weights, deprivation, summaries, sample_variance,
+    motion_models, likelihood, resamplers, noise, ablations,
+)  # fmt: skip
+LAB = Lab("lab3", "Lab 3: the particle filter", [q for part in PARTS for q in part.QUESTIONS])
 check, use, predict, answer, summary, save, load = LAB.verbs()
-film, line = FILM, LINE
+film, line = deprivation.FILM, motion_models.LINE
 
 __all__ = [
     "LAB",

@@ -1,0 +1,293 @@
+"""Q15 and Q16: what moves a gate, and what it misses."""
+
+from __future__ import annotations
+
+import numpy as np
+
+import pfkit as pf
+from pfkit.labs.items import (
+    Choice,
+    Experiment,
+    Misconception,
+    Numeric,
+    Prediction,
+    Property,
+)
+from pfkit.labs.lab import Question
+from pfkit.labs.target import AREA, anywhere, around, target_log, track
+
+FILM = target_log("fixed", "low")
+FALSE = target_log("fixed", "outliers")
+HOME = FILM.start[:2]
+
+# -- Q15 ------------------------------------------------------------------------------------------
+
+BELIEVED = (1e-4, 1.0, 100.0, 1000.0, 2000.0, 1e4)
+
+
+def rejected(variance, rng, runs):
+    """Share of 150 honest frames that a gate at 1e-4 rejects; known start, target stands still."""
+    bel = around(HOME, (runs, 300), rng, sigma=1.0)
+    sensor = pf.Position(np.sqrt(variance))
+    run = track(FILM[:150], bel, pf.FixedTarget(1.4), sensor, rng, gate=1e-4)
+    return run.rejected.mean(axis=0)
+
+
+def _rejections(f, rng, runs):
+    rows = [np.asarray(f(v, rng, runs), dtype=float) for v in BELIEVED]
+    if any(r.shape != (runs,) for r in rows):
+        raise ValueError(f"expected one share per run, got shape {rows[0].shape}")
+    return np.stack(rows, axis=1)
+
+
+Q15 = Question(
+    "q15",
+    "What moves the detector?",
+    (
+        Prediction(
+            id="q15a",
+            title="Rejected share of honest frames as the believed sensor variance grows",
+            key="c",
+            options={
+                "a": "It falls: a modest sensor forgives",
+                "b": "It rises",
+                "c": "It falls from nearly all to none, then jumps to all",
+                "d": "It does not depend on it",
+            },
+        ),
+        Experiment(
+            id="q15b",
+            after="q15a",
+            title="A U-shape",
+            points=2,
+            claim="above .8 at variance .0001, below .05 from 1 to 1,000, all at 2,000 and 10,000",
+            test="mean share over runs at each variance",
+            runs=4,
+            margin=".992 (sd .004), 0, 1: over 12 standard errors",
+            measure=_rejections,
+            reference=rejected,
+            hints=(
+                "lab.track(..., gate=1e-4).rejected is True where the gate was closed.",
+                "One number per run: the mean over frames.",
+                "pf.Position(np.sqrt(variance)).",
+            ),
+            properties=(
+                Property(
+                    "an overconfident sensor: more than .8 rejected",
+                    lambda x: x[:, 0].mean() > 0.8 or f"{x[:, 0].mean():.2f}",
+                ),
+                Property(
+                    "in between: below .05",
+                    lambda x: x[:, 1:4].mean(0).max() < 0.05 or f"{x.mean(0)[1:4].round(2)}",
+                ),
+                Property(
+                    "too modest: all rejected",
+                    lambda x: bool((x[:, 4:] == 1).all()) or f"{x.mean(0)[4:].round(2)}",
+                ),
+            ),
+            misconceptions=(
+                Misconception(
+                    "accepted",
+                    "gives the share that is accepted",
+                    (
+                        "Your curve is upside down.",
+                        "rejected is True where the gate was closed.",
+                        "run.rejected.mean(axis=0), without one minus.",
+                    ),
+                    lambda v, rng, runs: 1 - rejected(v, rng, runs),
+                    lambda x: x[:, 1:4].mean() > 0.95 and x[:, 4:].mean() < 0.05,
+                ),
+                Misconception(
+                    "from-anywhere",
+                    "starts anywhere, where the mean likelihood is about 1/area for any sensor",
+                    (
+                        "Your gate never opens. How likely is any measurement if you know nothing?",
+                        "1/area is 3.3e-6, far below the threshold of 1e-4.",
+                        "Start around the truth: lab.around(lab.film.start[:2], (runs, 300), rng).",
+                    ),
+                    lambda v, rng, runs: _rejected_from_anywhere(v, rng, runs),
+                    lambda x: x[:, 2:].mean() > 0.95,
+                ),
+            ),
+        ),
+        Numeric(
+            id="q15c",
+            title="Variance at which even a perfect hit has a density of 1e-4",
+            key=1e4 / (2 * np.pi),
+            tol=5.0,
+            unit="px^2",
+            hints=(
+                "What is the highest value of the density in two dimensions?",
+                "The peak is 1/(2 pi variance).",
+                "variance = 1/(2 pi 1e-4).",
+            ),
+            misconceptions=(
+                Misconception(
+                    "one-dimension",
+                    "uses the peak of a one-dimensional Gaussian",
+                    (
+                        "The measurement has two components.",
+                        "In two dimensions the peak is 1/(2 pi variance), without a root.",
+                        "variance = 1/(2 pi 1e-4).",
+                    ),
+                    1e8 / (2 * np.pi),
+                    lambda x: abs(x / (1e8 / (2 * np.pi)) - 1) < 0.01,
+                ),
+                Misconception(
+                    "deviation",
+                    "is a standard deviation",
+                    (
+                        "Square your number.",
+                        "The unit asked for is px^2.",
+                        "variance = 1/(2 pi 1e-4).",
+                    ),
+                    np.sqrt(1e4 / (2 * np.pi)),
+                    lambda x: abs(x - np.sqrt(1e4 / (2 * np.pi))) < 1,
+                ),
+                Misconception(
+                    "no-two-pi",
+                    "leaves 2 pi out",
+                    (
+                        "Write the constant of the density down.",
+                        "The peak is 1/(2 pi variance).",
+                        "variance = 1/(2 pi 1e-4).",
+                    ),
+                    1e4,
+                ),
+            ),
+        ),
+    ),
+)
+
+
+def _rejected_from_anywhere(v, rng, runs):
+    run = track(
+        FILM[:150],
+        anywhere((runs, 300), rng),
+        pf.FixedTarget(1.4),
+        pf.Position(np.sqrt(v)),
+        rng,
+        gate=1e-4,
+    )
+    return run.rejected.mean(axis=0)
+
+
+# -- Q16 ------------------------------------------------------------------------------------------
+
+
+def four_filters(rng, runs):
+    """Median error of 200 frames, half of them false: four filters, one number per run."""
+    motion, sensor = pf.FixedTarget(1.4), pf.Position(5.0)
+    mixed = pf.OutlierMixture(sensor, 0.5, 1 / AREA)
+    known = around(HOME, (runs, 200), rng, sigma=5.0)
+    film = FALSE[:200]
+    results = (
+        track(film, known, motion, sensor, rng),
+        track(film, known, motion, mixed, rng),
+        track(film, known, motion, sensor, rng, gate=1e-4),
+        track(film, anywhere((runs, 200), rng), motion, sensor, rng, gate=1e-4),
+    )
+    return np.array([np.median(r.error, axis=0) for r in results])
+
+
+def _four(f, rng, runs):
+    found = np.asarray(f(rng, runs), dtype=float)
+    if found.shape != (4, runs):
+        raise ValueError(f"expected shape (4, {runs}), got {found.shape}")
+    return found.T
+
+
+def _middle(x):
+    return np.median(x, axis=0)
+
+
+Q16 = Question(
+    "q16",
+    "Outliers that nobody detects",
+    (
+        Experiment(
+            id="q16a",
+            title="Naive, mixture, gate from a known start, gate from anywhere",
+            points=2,
+            claim="naive above 5 px; mixture and gate from a known start below 1 px; "
+            "the same gate from anywhere above 100 px",
+            test="medians over runs",
+            runs=5,
+            margin="28.7 (sd 1.0), .66 (.02), .65 (.03), 199 (6) px: over 14 standard errors",
+            measure=_four,
+            reference=four_filters,
+            hints=(
+                "Four rows of medians over frames, one number per run in each.",
+                "Only the sensor, the gate and the start differ.",
+                "np.median(lab.track(...).error, axis=0) for each.",
+            ),
+            properties=(
+                Property(
+                    "naive: above 5 px",
+                    lambda x: _middle(x)[0] > 5 or f"{_middle(x)[0]:.1f} px",
+                ),
+                Property(
+                    "mixture: below 1 px",
+                    lambda x: _middle(x)[1] < 1 or f"{_middle(x)[1]:.2f} px",
+                ),
+                Property(
+                    "gate from a known start: below 1 px",
+                    lambda x: _middle(x)[2] < 1 or f"{_middle(x)[2]:.2f} px",
+                ),
+                Property(
+                    "gate from anywhere: above 100 px, it never opens",
+                    lambda x: _middle(x)[3] > 100 or f"{_middle(x)[3]:.1f} px",
+                ),
+            ),
+            misconceptions=(
+                Misconception(
+                    "no-gate",
+                    "has a gate that is never closed",
+                    (
+                        "Your gate from a known start is as bad as no gate.",
+                        "Which argument of lab.track sets the threshold?",
+                        "gate=1e-4.",
+                    ),
+                    lambda rng, runs: four_filters(rng, runs)[[0, 1, 0, 0]],
+                    lambda x: _middle(x)[2] > 5 and _middle(x)[1] < 1,
+                ),
+                Misconception(
+                    "known-start-always",
+                    "starts the last filter near the truth, too",
+                    (
+                        "Your last two filters are the same.",
+                        "What does a gate see if the filter does not know where the target is?",
+                        "lab.anywhere((runs, 200), rng) for the last one.",
+                    ),
+                    lambda rng, runs: four_filters(rng, runs)[[0, 1, 2, 2]],
+                    lambda x: _middle(x)[3] < 5,
+                ),
+            ),
+        ),
+        Choice(
+            id="q16b",
+            title="A gate that works from a known start locks the filter out from anywhere. "
+            "What would you build in?",
+            key="d",
+            options={
+                "a": "A lower threshold, found by trial",
+                "b": "No gate at all",
+                "c": "More particles",
+                "d": "A mixture in the likelihood, which needs no threshold and lets a lost filter "
+                "listen",
+            },
+            feedback={
+                "a": "It must lie below 1/area at the start and above it later: no constant does.",
+                "b": "Then half of the measurements drag the filter away.",
+                "c": "The mean likelihood from anywhere is about 1/area for any number.",
+                "d": "Yes: (1 - epsilon) N + epsilon / area, with both constants from the sensor.",
+            },
+        ),
+    ),
+)
+
+
+QUESTIONS = (
+    Q15,
+    Q16,
+)
