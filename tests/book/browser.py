@@ -28,7 +28,7 @@ FLAGS = (
 WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 SETTLE = 400  # ms: the theme waits before it reacts to a new width
 LARGEST_PAGE = 400_000  # bytes beyond what all pages share
-SHARED = ("/_static/", "/live/")
+SHARED = ("/_static/", "/live/")  # all pages, or all pages that compute, load the same
 FORWARDS = 'http-equiv="refresh"'
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 

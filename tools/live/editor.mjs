@@ -28,7 +28,7 @@ window.PFEditor = function (parent, options) {
         lineNumbers(), history(), drawSelection(), highlightSpecialChars(), bracketMatching(),
         closeBrackets(), indentOnInput(), indentUnit.of("    "), python(),
         look.of(options.dark ? dark : light),
-        EditorView.contentAttributes.of({ "aria-label": options.label, spellcheck: "false" }),
+        EditorView.contentAttributes.of({ "aria-label": options.label, spellcheck: "false", tabindex: "0" }),
         keymap.of([
           { key: "Shift-Enter", run: () => { options.onRun(); return true; } },
           { key: "Mod-Enter", run: () => { options.onCheck(); return true; } },
