@@ -430,9 +430,8 @@ def _no_copy_run(rng, threshold=0.0, M=1000):
     world = pf.worlds.arena()
     motion = pf.VelocityMotion(alpha=(0.02, 0.002, 0.002, 0.02, 0.002, 0.002))
     sensor = pf.RangeBearing(world, 0.3, 0.1)
-    log = pf.simulate_log(
-        pf.worlds.ARENA_START, pf.worlds.arena_route(3)[:, :200], motion, sensor, rng, every=4
-    )
+    route = pf.worlds.arena_route()[:, :50]
+    log = pf.simulate_log(pf.worlds.ARENA_START, route, motion, sensor, rng)
     bel = pf.uniform_prior(M, world, rng)
     return pf.run(log, bel, motion, sensor, rng, threshold=threshold).ess[-1]
 
