@@ -128,8 +128,9 @@
 
     makeEditor() {
       const options = {
-        doc: this.text, label: `Code of answer ${this.cell.item}`, dark: PF.isDark(this.root),
+        doc: this.text, label: `Code of answer ${this.cell.item}; Escape leaves the editor`, dark: PF.isDark(this.root),
         onRun: () => this.run(false), onCheck: () => this.run(Boolean(this.check)),
+        onLeave: () => this.runButton.focus(),
         onChange: (text) => {
           this.text = text;
           clearTimeout(this.saving);

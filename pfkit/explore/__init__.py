@@ -24,6 +24,7 @@ SCENES = {
     "comb": ("pfkit.explore.comb", "Comb"),
     "corridor": ("pfkit.explore.corridor", "Corridor"),
     "drive": ("pfkit.explore.drive", "Drive"),
+    "mower": ("pfkit.explore.mower", "Mower"),
     "proposal": ("pfkit.explore.proposal", "Proposal"),
 }
 

@@ -141,7 +141,8 @@ class Comb(Scene):
                     lambda s: s.draws > 500,
                 ),
                 Mission(
-                    "Choose equal weights. Which variances fall to exactly zero? Say why before you look.",
+                    "Choose equal weights. Which variances fall to exactly zero? Say why before "
+                    "you look.",
                     lambda s: s.values["weights"] == "equal" and s.draws >= 20,
                 ),
                 Mission(

@@ -1,0 +1,77 @@
+"""The Sphinx extension: what it takes from a notebook, and what it refuses."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+
+
+@pytest.fixture(scope="module")
+def live_page():
+    sys.path.insert(0, str(ROOT / "book" / "_ext"))
+    import live_page
+
+    yield live_page
+    sys.path.remove(str(ROOT / "book" / "_ext"))
+
+
+def cell(source, **metadata):
+    return {"cell_type": "code", "source": source, "metadata": metadata}
+
+
+def test_a_check_is_found_by_its_call(live_page):
+    assert live_page.is_check('lab.check("q2", f)', "lab", "q2")
+    assert not live_page.is_check('lab.check("q3", f)', "lab", "q2")
+    assert not live_page.is_check('other.check("q2", f)', "lab", "q2")
+    assert not live_page.is_check("lab.check(", "lab", "q2")
+
+
+def test_cells_of_a_lab(live_page):
+    cells = [
+        cell("from pfkit.labs import lab3 as lab"),
+        cell("p1a = ...", answer="p1a"),
+        cell('lab.check("p1a", p1a)'),
+        cell('lab.predict("p4a", p4a)', check="p4a"),
+        {"cell_type": "markdown", "source": "x", "metadata": {}},
+        cell("1 + 1"),
+    ]
+    found = live_page.read_lab(cells)
+    assert found["lab"] == "lab3" and found["alias"] == "lab"
+    kinds = [c["kind"] for c in found["cells"]]
+    assert kinds == ["code", "answer", "check", "check", "code"]
+    assert [c["index"] for c in found["cells"]] == [0, 1, 2, 3, 5]
+    assert len(found["cells"][1]["version"]) >= 8
+
+
+def test_a_notebook_without_answers_is_no_lab(live_page):
+    assert live_page.read_lab([cell("from pfkit.labs import lab3 as lab")]) is None
+    assert live_page.read_lab([cell("x = 1", answer="q")]) is None
+
+
+def build(tmp_path, text, *flags):
+    from sphinx.cmd.build import build_main
+
+    (tmp_path / "index.md").write_text(text, encoding="utf-8")
+    conf = "extensions = ['myst_parser', 'live_page']\nimport sys\n"
+    (tmp_path / "conf.py").write_text(
+        conf + f"sys.path.insert(0, {str(ROOT / 'book' / '_ext')!r})\n", encoding="utf-8"
+    )
+    return build_main(["-q", *flags, "-b", "html", str(tmp_path), str(tmp_path / "out")])
+
+
+def test_an_unknown_scene_fails_the_build(live_page, tmp_path, capfd):
+    assert build(tmp_path, "# T\n\n```{explorable} no_such_scene\n```\n", "-W") != 0
+    assert "no explorable is called" in capfd.readouterr().err
+
+
+def test_without_the_runtime_a_page_keeps_still_and_missions(live_page, tmp_path, monkeypatch):
+    monkeypatch.setattr(live_page, "SITE", tmp_path / "nothing")
+    assert build(tmp_path, "# T\n\n```{explorable} comb\n:seed: 3\n\n1. Look.\n```\n", "-W") == 0
+    page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+    assert 'src="live-runs/comb-comb-3.svg"' in page and "Look." in page
+    assert (tmp_path / "out" / "live-runs" / "comb-comb-3.svg").exists()
+    assert "page.js" not in page
