@@ -1,0 +1,231 @@
+"""The mower: a real robot, four radio beacons, and a filter whose settings you choose.
+
+Chapter 14 as a machine. The log is Plaza 2: a mower on grass that hears one distance at a time.
+Each tick of the scene is one recorded range. The reader may hide most ranges, forget that the
+radios read long, trust them too much, or start without knowing where.
+"""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from importlib.resources import files
+from typing import Any, ClassVar
+
+import numpy as np
+
+import pfkit as pf
+from pfkit.explore.pen import Pen
+from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
+
+BOUNDS = (-90.0, 20.0, -5.0, 95.0)
+DRIFT = pf.Drift((0.005, 0, 0), (5e-5, 0.002, 0))
+WINDOW = 200  # ranges that the chart shows
+SURE, FAR = 1.0, 2.5  # metres: what counts as sure of itself, and as wrong
+
+
+@cache
+def recorded() -> dict[str, Any]:
+    """The log, unpacked into metres, seconds and radians; controls are composed once."""
+    raw = json.loads(files("pfkit.explore").joinpath("mower.json").read_text("ascii"))
+    seconds = np.array(raw["t [ms]"]) / 1e3
+    dt = np.maximum(seconds, 1e-3)
+    way, turn = np.array(raw["driven [mm]"]) / 1e3, np.array(raw["turned [0.1 mrad]"]) / 1e4
+    truth = np.stack((raw["x [cm]"], raw["y [cm]"], raw["theta [mrad]"])) * [[0.01], [0.01], [1e-3]]
+    z = np.stack((np.array(raw["range [cm]"]) / 100, raw["beacon"]))
+    log = pf.Log(
+        np.cumsum(seconds),
+        np.stack((way / dt, turn / dt, dt)),
+        [z[:, k : k + 1] for k in range(z.shape[1])],
+        truth=truth,
+        start=np.array(raw["start"]),
+        world=pf.LandmarkMap(np.array(raw["beacons [m]"]), bounds=BOUNDS),
+    )
+    short = pf.compose_odometry(log, DRIFT)
+    blind = pf.compose(log.start[:, None], pf.Odometer(log.u, DRIFT).path[:, 1:])
+    return {"log": short, "blind": blind, "bias": np.array(raw["bias [m]"])}
+
+
+class Mower(Scene):
+    name = "mower"
+    size = (720, 460)
+    rate = 20.0
+    record_steps = 600
+    record_every = 10
+    units: ClassVar[dict[str, str]] = {
+        "time": "s",
+        "error": "m",
+        "spread": "m",
+        "dead reckoning": "m",
+        "ranges used": "",
+        "ESS": "",
+    }
+    all_controls = (
+        Control("bias", "Know the beacons' biases", "toggle", True, help="1.9 to 3.8 m, learnt."),
+        Control(
+            "keep",
+            "Use one range in",
+            "range",
+            1,
+            lo=1,
+            hi=60,
+            step=1,
+            help="The others are thrown away before the filter sees them.",
+        ),
+        Control(
+            "sigma_r",
+            "Modelled noise of a range",
+            "range",
+            3.0,
+            lo=0.3,
+            hi=10,
+            step=0.1,
+            unit="m",
+            log=True,
+            help="The true errors have a standard deviation of about 1.6 m.",
+        ),
+        Control(
+            "start",
+            "Start",
+            "choice",
+            "known",
+            choices=(("known", "known"), ("anywhere", "anywhere on the lawn")),
+            help="Anywhere: uniform, and the measurements are let in by stages.",
+            live=False,
+        ),
+        Control(
+            "M",
+            "Particles",
+            "choice",
+            "1000",
+            choices=(("200", "200"), ("1000", "1,000"), ("4000", "4,000")),
+            help="More particles: slower, and safer from an unknown start.",
+            live=False,
+        ),
+        Control(
+            "begin",
+            "Scrub the log to",
+            "range",
+            0,
+            lo=0,
+            hi=90,
+            step=5,
+            unit="%",
+            live=False,
+            help="Where in the seven minutes the run begins.",
+        ),
+    )
+    panels: ClassVar[dict[str, Panel]] = {
+        "mower": Panel(
+            "A real mower among four radio beacons",
+            ("bias", "keep", "sigma_r", "start", "M", "begin"),
+            missions=(
+                Mission(
+                    "Let it run for ten seconds, then forget the biases. Find a moment when the "
+                    f"spread is below {SURE:g} m and the error above {FAR:g} m.",
+                    lambda s: s.values["bias"] is False and s.spread < SURE and s.error > FAR,
+                ),
+                Mission(
+                    "Know the biases and throw ranges away. Can it live on one range in twenty "
+                    "for a minute, with an error below 5 m at the end?",
+                    lambda s: s.thin_for > 260 and s.error < 5,
+                ),
+                Mission(
+                    "Start anywhere. How many ranges until error and spread are below 3 m? "
+                    "Scrub the log to another place and count again.",
+                    lambda s: s.values["start"] == "anywhere" and max(s.error, s.spread) < 3,
+                ),
+            ),
+            alt="A lawn with four radio beacons. A mower drives in loops; a cloud of particles "
+            "follows it while dead reckoning, a dotted track, wanders off. A chart below compares "
+            "the error with the spread that the filter reports.",
+        )
+    }
+
+    def start(self) -> None:
+        self.log: pf.Log = recorded()["log"]
+        self.k = int(self.values["begin"] / 100 * len(self.log))
+        self.first, self.used, self.thin_for = self.k, 0, 0
+        M = int(self.values["M"])
+        self.truth = self.log.start if self.k == 0 else self.log.truth[:, self.k - 1]
+        if self.values["start"] == "known":
+            self.bel = pf.gaussian_prior(M, self.truth, (0.3, 0.3, 0.03), self.rng)
+        else:
+            self.bel = pf.uniform_prior(M, self.log.world, self.rng)
+        self.ess = float(M)
+        self.chart: list[tuple[float, float]] = []
+        self.heard: tuple[int, float] | None = None
+        self._judge_cloud()
+
+    def advance(self) -> None:
+        if self.k >= len(self.log):
+            return
+        self.bel = pf.predict(self.bel, self.log.u[:, self.k], pf.ComposedMotion(), self.rng)
+        keep = int(self.values["keep"])
+        self.heard = None
+        self.thin_for = self.thin_for + 1 if keep >= 20 else 0
+        if self.k % keep == 0:
+            self._listen(self.log.z[self.k])
+        self.truth = self.log.truth[:, self.k]
+        self.k += 1
+        self._judge_cloud()
+
+    def _listen(self, z: np.ndarray) -> None:
+        bias = recorded()["bias"] if self.values["bias"] else 0.0
+        sensor = pf.Range(self.log.world, self.values["sigma_r"], bias=bias, nu=4)
+        self.bel, _ = pf.tempered_update(self.bel, z, sensor, self.rng)
+        self.ess = float(self.bel.ess)
+        if self.ess < self.bel.M / 2:
+            self.bel = pf.resample(self.bel, pf.systematic, self.rng)
+        s = int(z[1, 0])
+        self.heard = s, float(z[0, 0] - (bias[s] if self.values["bias"] else 0.0))
+        self.used += 1
+
+    def _judge_cloud(self) -> None:
+        self.mean, Sigma = pf.mean_pose(self.bel), pf.covariance(self.bel)
+        self.error = float(np.hypot(*(self.mean - self.truth)[:2]))
+        self.spread = float(np.sqrt(Sigma[0, 0] + Sigma[1, 1]))
+        self.chart.append((self.error, self.spread))
+
+    def readouts(self) -> Readouts:
+        blind = recorded()["blind"][:2, max(self.k - 1, 0)]
+        return {
+            "time": float(self.log.t[min(self.k, len(self.log) - 1)]),
+            "error": self.error,
+            "spread": self.spread,
+            "dead reckoning": float(np.hypot(*(blind - self.truth[:2]))),
+            "ranges used": float(self.used),
+            "ESS": self.ess,
+        }
+
+    # ---- drawing ----------------------------------------------------------------------------
+    def draw(self, pen: Pen) -> None:
+        x0, x1, y0, y1 = BOUNDS
+        pen.view((0.01, 0.02, 0.60, 0.96), (x0, x1), (y0, y1), equal=True)
+        behind = slice(max(self.first, self.k - 160), max(self.k, 1), 4)
+        pen.line("accent", *recorded()["blind"][:2, behind], width=1.2, dash=2)
+        pen.line("truth", *self.log.truth[:2, behind], width=1.5)
+        shown = slice(None, None, max(self.bel.M // 300, 1))
+        pen.points("particle", *self.bel.state[:2, shown], size=2)
+        mx, my = self.log.world.positions
+        if self.heard is not None:
+            s, r = self.heard
+            pen.ellipses("ray", mx[s], my[s], max(r, 0.1), max(r, 0.1), width=1.2)
+        pen.symbols("landmark", "diamond", mx, my, size=15)
+        pen.robots("truth", *self.truth, radius=2.0)
+        pen.robots("estimate", *self.mean, radius=1.6)
+        self._draw_chart(pen)
+
+    def _draw_chart(self, pen: Pen) -> None:
+        begin = max(0, (len(self.chart) - WINDOW) // 4 * 4)
+        error, spread = np.array(self.chart[begin::4]).T
+        at = begin + 4 * np.arange(len(error))
+        top = max(6.0, float(np.ceil(max(error.max(), spread.max()))))
+        pen.view((0.67, 0.12, 0.31, 0.62), (at[0], at[0] + WINDOW), (0, top))
+        pen.line("accent", at, error, width=2)
+        pen.line("estimate", at, spread, width=2, dash=5)
+        pen.ticks(1, [0, top / 2, top])
+        pen.view((0.67, 0.78, 0.31, 0.2), (0, 1), (0, 1), frame=False)
+        pen.text("ink", 0, 0.75, "error [m]: solid", size=12)
+        pen.text("ink", 0, 0.4, "spread of the cloud [m]: dashed", size=12)
+        pen.text("muted", 0, 0.05, "last 200 recorded ranges", size=11)
