@@ -127,10 +127,8 @@ class Proposal(Scene):
 
     def p(self, x: np.ndarray) -> np.ndarray:
         """The target's density."""
-        return sum(
-            w * normal(x, mu, sigma)
-            for w, mu, sigma in zip(*TARGETS[self.values["target"]], strict=True)
-        )
+        parts = zip(*TARGETS[self.values["target"]], strict=True)
+        return np.asarray(sum(w * normal(x, mu, sigma) for w, mu, sigma in parts))
 
     def q(self, x: np.ndarray) -> np.ndarray:
         """The proposal's density."""

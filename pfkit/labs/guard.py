@@ -31,7 +31,8 @@ class _Capped(io.TextIOBase):
     """A text stream that keeps the first characters and counts the rest."""
 
     def __init__(self, limit: int) -> None:
-        self.kept, self.room, self.dropped = [], limit, 0
+        self.kept: list[str] = []
+        self.room, self.dropped = limit, 0
 
     def writable(self) -> bool:
         return True
