@@ -164,7 +164,10 @@ class BeamModel(Sensor):
         """
         r, length = require_finite("r", r, DataError), as_numbers("length", length)
         if not ((r >= 0).all() and (length >= 0).all()):
-            raise DataError("ranges and lengths must be >= 0; a lost beam reads r_max")
+            least = min(r.min(), length.min())
+            raise DataError(
+                f"ranges and lengths must be >= 0, got {least}; a lost beam reads r_max"
+            )
         r, length = np.broadcast_arrays(r, length)
         top, lam = r >= self.r_max, self.lambda_short
         scaled = (r - length) / self.sigma_hit

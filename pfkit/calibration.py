@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import DataError
+from pfkit.errors import DataError, require_finite, require_instance
 from pfkit.geometry import between, wrap
 from pfkit.log import Log
 from pfkit.odometry import Drift, Odometer
@@ -58,6 +58,10 @@ class Calibration:
     delay: float = 0.0
     bearing_bias: float = 0.0
     range_bias: float | Array = 0.0
+
+    def __post_init__(self) -> None:
+        for name in ("speed", "turn", "delay", "bearing_bias", "range_bias"):
+            require_finite(name, getattr(self, name))
 
     def apply(self, log: Log) -> Log:
         """The log as a well-calibrated odometer would have written it."""
@@ -147,6 +151,7 @@ def calibrate(log: Log) -> Calibration:
     The odometry of a log with ranges only is left alone: ours measures its wheels, and on the
     first third of Plaza 2 two fitted scales made the filter slightly worse.
     """
+    require_instance("log", log, Log)
     if next(zk for zk in log.z if zk.shape[1]).shape[0] == 3:
         return replace(fit_odometry(log), bearing_bias=fit_bearing_bias(log))
     return Calibration(range_bias=fit_range_bias(log))

@@ -226,7 +226,7 @@ def compare(
 def _runs(x: ArrayLike, least: int) -> Array:
     x = require_finite("scores", x)
     if x.ndim != 1 or x.size < least:
-        raise ShapeError(f"need one score per run, (n,) with n >= {least}, got {x.shape}")
+        raise ShapeError(f"scores must be one per run, (n,) with n >= {least}, got {x.shape}")
     return x
 
 

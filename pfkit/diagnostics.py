@@ -74,7 +74,7 @@ def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
     if truth.ndim == estimate.ndim + 1 and truth.shape[-1] == 1:
         truth = truth[..., 0]  # the truths of a batched log are (D, T, B, 1)
     if truth.shape != estimate.shape[: truth.ndim]:
-        raise ShapeError(f"truth {truth.shape} does not match the estimate {estimate.shape}")
+        raise ShapeError(f"truth {truth.shape} must match the estimate {estimate.shape}")
     error = estimate - truth.reshape(truth.shape + (1,) * (estimate.ndim - truth.ndim))
     if error.shape[0] >= 3:
         known = ~np.isnan(error[2])

@@ -114,7 +114,7 @@ def kld_count(
         If there is not one cell size > 0 for each component.
     """
     state, cell = require_finite("state", state), require_positive("cell", cell)
-    if state.ndim != 2 or cell.shape != (state.shape[0],):
+    if state.ndim != 2 or state.size == 0 or cell.shape != (state.shape[0],):
         raise ShapeError(
             f"state (D, n) needs cell (D,), got {state.shape} and {cell.shape}; "
             "KLD-sampling is for one filter, not for a batch"

@@ -19,10 +19,16 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, require_components, require_finite, require_positive
+from pfkit.errors import (
+    ParameterError,
+    require_components,
+    require_finite,
+    require_method,
+    require_positive,
+)
 from pfkit.geometry import wrap
 from pfkit.maps import LandmarkMap
-from pfkit.sensors import Sensor, draw_errors, log_student, require_nu
+from pfkit.sensors import Sensor, draw_errors, error_density, require_nu
 
 Array = NDArray[np.float64]
 
@@ -75,6 +81,7 @@ class RangeBearing(Sensor):
     broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
+        require_method("world", self.world, "locate")
         require_positive("sigma_r", self.sigma_r)
         require_positive("sigma_phi", self.sigma_phi)
         require_finite("bias_phi", self.bias_phi)
@@ -102,7 +109,7 @@ class RangeBearing(Sensor):
         dx, dy = mx - x, my - y
         range_error = r - np.sqrt(dx * dx + dy * dy)
         bearing_error = wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)
-        return log_student(range_error, self.sigma_r, self.nu) + log_student(
+        return error_density(range_error, self.sigma_r, self.nu) + error_density(
             bearing_error, self.sigma_phi, self.nu
         )
 
@@ -139,6 +146,7 @@ class Bearing(Sensor):
     broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
+        require_method("world", self.world, "locate")
         require_positive("sigma_phi", self.sigma_phi)
         require_finite("bias_phi", self.bias_phi)
         require_nu(self.nu)
@@ -161,7 +169,7 @@ class Bearing(Sensor):
         x, y, theta = pose
         mx, my = self.world.locate(s)
         error = wrap(phi - self.bias_phi - np.arctan2(my - y, mx - x) + theta)
-        return log_student(error, self.sigma_phi, self.nu)
+        return error_density(error, self.sigma_phi, self.nu)
 
 
 @dataclass(frozen=True)
@@ -194,6 +202,7 @@ class Range(Sensor):
     broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
+        require_method("world", self.world, "locate")
         require_positive("sigma_r", self.sigma_r)
         require_nu(self.nu)
         bias = require_finite("bias", self.bias)
@@ -224,7 +233,7 @@ class Range(Sensor):
         mx, my = self.world.locate(s)
         dx, dy = mx - pose[0], my - pose[1]
         error = r - self._bias_of(s) - np.sqrt(dx * dx + dy * dy)
-        return log_student(error, self.sigma_r, self.nu)
+        return error_density(error, self.sigma_r, self.nu)
 
     def _bias_of(self, s: ArrayLike) -> Array:
         return self._offsets.locate(s)[0]  # type: ignore[attr-defined]

@@ -88,6 +88,8 @@ class Log:
             )
         if self.truth is not None and self.truth.ndim < 2:
             raise DataError(f"truth must have shape (3, T), got {self.truth.shape}")
+        if not hasattr(self.z, "__len__"):
+            raise DataError(f"z must be a list of arrays (n, K), one per step, got {self.z!r:.60}")
         bare = [k for k, zk in enumerate(self.z) if getattr(zk, "ndim", 0) < 2]
         if bare:
             raise DataError(

@@ -29,7 +29,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import require_components, require_non_negative
+from pfkit.errors import (
+    ShapeError,
+    require_components,
+    require_instance,
+    require_non_negative,
+)
 from pfkit.geometry import between, compose, wrap
 from pfkit.log import Log
 
@@ -110,6 +115,7 @@ class Odometer:
     """
 
     def __init__(self, u: Array, drift: Drift) -> None:
+        require_instance("drift", drift, Drift)
         v, omega, dt = require_components("u", u, 3)
         turn = omega * dt
         heading = np.concatenate(([0.0], np.cumsum(turn)))
@@ -194,6 +200,7 @@ def compose_odometry(log: Log, drift: Drift, steps: NDArray[np.int64] | None = N
     -------
     Log with u of shape (12, n) for `ComposedMotion`
     """
+    require_instance("log", log, Log)
     steps = informative_steps(log) if steps is None else steps
     ends = steps + 1
     motion, Sigma = Odometer(log.u, drift).between(np.append(0, ends[:-1]), ends)
@@ -227,6 +234,16 @@ def fill_in(
     estimate : array (3, T) or (3, T, B)
     sd : array (T,) or (T, B), root of the summed position variances, metres
     """
+    require_instance("log", log, Log)
+    estimate = require_components("estimate", estimate, 3)
+    Sigma, ends = require_components("Sigma", Sigma, 3), np.asarray(ends)
+    if ends.dtype.kind not in "iu" or ends.shape != estimate.shape[1:2] or np.any(ends < 0):
+        raise ShapeError(
+            f"ends must be whole numbers, one per estimate {estimate.shape}, got "
+            f"{ends.dtype} of shape {ends.shape}"
+        )
+    if Sigma.shape != (3, *estimate.shape):
+        raise ShapeError(f"Sigma must be {(3, *estimate.shape)}, got {Sigma.shape}")
     now = np.arange(1, len(log) + 1)
     latest = np.searchsorted(ends, now, side="right") - 1
     motion, grown = Odometer(log.u, drift).between(ends[latest], now)

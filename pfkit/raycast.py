@@ -23,7 +23,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_components, require_finite
+from pfkit.errors import ShapeError, require_components, require_finite, require_number
 from pfkit.occupancy import OccupancyGrid, require_grid
 
 Array = NDArray[np.float64]
@@ -83,8 +83,7 @@ class RayCaster:
         phi = require_finite("angles", angles)
         if phi.ndim == 0 or phi.size == 0:
             raise ShapeError(f"angles must have shape (K,), K >= 1, got {phi.shape}")
-        if not r_max > 0:
-            raise ParameterError(f"r_max must be > 0, got {r_max}")
+        r_max = require_number("r_max", r_max, above=0.0)
         if phi.ndim == 1:
             phi = phi.reshape(-1, *(1,) * (pose.ndim - 1))
         shape = (len(phi), *np.broadcast_shapes(pose.shape[1:], phi.shape[1:]))

@@ -88,9 +88,13 @@ class Memory(NamedTuple):
         ParameterError
             If the rates are not in that order, or K is not a whole number >= 1.
         """
-        if not 0 < alpha_slow < alpha_fast < 1:
+        slow, fast = (
+            require_finite("alpha_slow", alpha_slow),
+            require_finite("alpha_fast", alpha_fast),
+        )
+        if not 0 < slow < fast < 1:
             raise ParameterError(
-                f"need 0 < alpha_slow < alpha_fast < 1, got {alpha_slow} and {alpha_fast}"
+                f"rates must obey 0 < alpha_slow < alpha_fast < 1, got {alpha_slow}, {alpha_fast}"
             )
         log_mean = require_finite("log_evidence", log_evidence) / require_count("K", K)
         log_slow, log_fast = (

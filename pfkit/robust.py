@@ -27,6 +27,7 @@ from pfkit.errors import (
     DataError,
     require_components,
     require_fraction,
+    require_method,
     require_non_negative,
     require_positive,
 )
@@ -94,6 +95,7 @@ class OutlierMixture(_Wrapper):
     density: float
 
     def __post_init__(self) -> None:
+        require_method("sensor", self.sensor, "log_density")
         require_fraction("epsilon", self.epsilon)
         require_positive("density", self.density)
 
@@ -143,6 +145,7 @@ class Gate(_Wrapper):
     threshold: float
 
     def __post_init__(self) -> None:
+        require_method("sensor", self.sensor, "log_density")
         require_non_negative("threshold", self.threshold)
 
     def log_density(self, zk: Array, pose: Array) -> Array:
@@ -197,6 +200,7 @@ class Tempered(_Wrapper):
     exponent: float
 
     def __post_init__(self) -> None:
+        require_method("sensor", self.sensor, "log_density")
         require_fraction("exponent", self.exponent)
 
     def log_density(self, zk: Array, pose: Array) -> Array:

@@ -59,7 +59,7 @@ def commands(segments: Iterable[tuple[float, float, float]], dt: float) -> Array
     for segment in segments:
         values = require_finite("a command (v, omega, seconds)", segment)
         if values.shape != (3,):
-            raise ShapeError(f"a command is (v, omega, seconds), got {segment!r}")
+            raise ShapeError(f"a command must be (v, omega, seconds), got {segment!r}")
         v, omega, seconds = values
         if seconds < 0:
             raise ParameterError(f"a command must last >= 0 s, got {seconds}; swap its end points")

@@ -35,7 +35,6 @@ from pfkit.errors import (
     DataError,
     ParameterError,
     ShapeError,
-    as_numbers,
     require_components,
     require_finite,
     require_positive,
@@ -71,8 +70,11 @@ def log_gaussian(error: ArrayLike, sigma: float) -> Array:
     ParameterError
         If sigma is not positive, or an error is not a number.
     """
-    _require_scale(sigma)
-    log_p = np.square(as_numbers("error", error))
+    return _gaussian(require_finite("error", error), _require_scale(sigma))
+
+
+def _gaussian(error: Array, sigma: float) -> Array:
+    log_p = np.square(error)
     log_p *= -0.5 / sigma**2
     log_p -= math.log(sigma * math.sqrt(2 * math.pi))
     return log_p
@@ -102,10 +104,14 @@ def log_student(error: ArrayLike, sigma: float, nu: float) -> Array:
         If sigma or nu is not positive, or an error is not a number.
     """
     require_nu(nu)
+    return error_density(require_finite("error", error), _require_scale(sigma), nu)
+
+
+def error_density(error: Array, sigma: float, nu: float) -> Array:
+    """`log_student` without the checks, for sensors that have made them."""
     if math.isinf(nu):
-        return log_gaussian(error, sigma)
-    _require_scale(sigma)
-    scaled = as_numbers("error", error) / sigma
+        return _gaussian(error, sigma)
+    scaled = error / sigma
     constant = math.lgamma((nu + 1) / 2) - math.lgamma(nu / 2) - 0.5 * math.log(math.pi * nu)
     return constant - math.log(sigma) - 0.5 * (nu + 1) * np.log1p(scaled * scaled / nu)
 
@@ -116,9 +122,10 @@ def require_nu(nu: float) -> None:
         raise ParameterError(f"nu must be > 0 (inf for a Gaussian), got {nu!r}")
 
 
-def _require_scale(sigma: float) -> None:
+def _require_scale(sigma: float) -> float:
     if not isinstance(sigma, _NUMBER) or not 0 < sigma < math.inf:
         raise ParameterError(f"sigma must be one number > 0, got {sigma!r}; 0 has no density")
+    return sigma
 
 
 _NUMBER = (float, int, np.floating, np.integer)
@@ -317,4 +324,4 @@ class Compass(Sensor):
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one heading (1, ...) at poses (3, ...): shape (...)."""
-        return log_student(wrap(zk[0] - self.bias - pose[2]), self.sigma_theta, self.nu)
+        return error_density(wrap(zk[0] - self.bias - pose[2]), self.sigma_theta, self.nu)

@@ -27,7 +27,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import require_components, require_finite, require_non_negative
+from pfkit.errors import require_components, require_finite, require_non_negative, require_rng
 from pfkit.geometry import wrap
 
 Array = NDArray[np.float64]
@@ -56,6 +56,7 @@ class FixedTarget:
     def __post_init__(self) -> None:
         require_non_negative("sigma", self.sigma)
         require_non_negative("sigma_theta", self.sigma_theta)
+        require_finite("heading", getattr(self, "heading", 0.0))  # only `HeadingTarget` has one
 
     def mean(self, state: ArrayLike, u: ArrayLike) -> Array:
         """Where the state (D, ...) goes without noise under u = (v, omega, dt)."""
@@ -63,6 +64,7 @@ class FixedTarget:
 
     def sample(self, state: ArrayLike, u: ArrayLike, rng: np.random.Generator) -> Array:
         """One noisy step of every state (D, ...): fresh noise for each particle."""
+        require_rng(rng)
         moved = self.mean(state, u)
         moved[:2] += self.sigma * rng.standard_normal((2, *moved.shape[1:]))
         if len(moved) > 2:

@@ -27,11 +27,18 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import require_fraction, require_non_negative
+from pfkit.errors import (
+    DataError,
+    as_numbers,
+    require_fraction,
+    require_method,
+    require_non_negative,
+    require_rng,
+)
 from pfkit.estimators import covariance
 from pfkit.filters import select
 from pfkit.geometry import wrap
-from pfkit.particles import Particles, ess, normalise
+from pfkit.particles import Particles, ess, normalise, require_particles
 from pfkit.resampling import Resampler, systematic
 from pfkit.sensors import SensorModel
 
@@ -71,14 +78,18 @@ def tempered_update(
     Particles, weighted: resample them as after any update
     stages : int64 array, () or (B,); 1 where plain weighting was good enough
     """
+    require_particles(bel)
+    require_method("sensor", sensor, "log_likelihood")
     require_fraction("keep", keep)
     require_non_negative("kernel", kernel)
     stages = np.zeros(bel.log_w.shape[:-1], dtype=np.int64)
-    if z is None or np.shape(z)[1] == 0:
+    z = None if z is None else as_numbers("z", z, DataError)
+    if z is None or (z.ndim > 1 and z.shape[1] == 0):
         return bel, stages
+    require_rng(rng)
     left = np.ones(bel.log_w.shape[:-1])
     while True:
-        log_p = sensor.log_likelihood(np.asarray(z, dtype=float), bel.state)
+        log_p = sensor.log_likelihood(z, bel.state)
         step = _largest_step(bel.log_w, log_p, keep * bel.M, left)
         stages = stages + (left > 0)
         left = left - step
