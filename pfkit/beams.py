@@ -164,7 +164,7 @@ class BeamModel(Sensor):
         """
         r, length = require_finite("r", r, DataError), as_numbers("length", length)
         if not ((r >= 0).all() and (length >= 0).all()):
-            least = min(r.min(), length.min())
+            least = np.minimum(r.min(), length.min())  # NaN if there is one
             raise DataError(
                 f"ranges and lengths must be >= 0, got {least}; a lost beam reads r_max"
             )
