@@ -121,7 +121,8 @@ def problems(notebook, name, items):
 
 def option_problems(cells, items):
     """A choice must be readable where it is asked: its options stand in the text."""
-    prose = " ".join(" ".join(text(c).split()) for c in cells if c["cell_type"] == "markdown")
+    prose = " ".join(text(c) for c in cells if c["cell_type"] == "markdown")
+    prose = " ".join(re.sub(r"<!--.*?-->", "", prose, flags=re.S).split())
     asked = {i for c in cells if c["cell_type"] == "code" for _, i in LAB_CALL.findall(text(c))}
     return [
         f"{i} ({letter}) is not in the text: {option}"
