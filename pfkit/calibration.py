@@ -150,6 +150,20 @@ def calibrate(log: Log) -> Calibration:
 
     The odometry of a log with ranges only is left alone: ours measures its wheels, and on the
     first third of Plaza 2 two fitted scales made the filter slightly worse.
+
+    Parameters
+    ----------
+    log : Log
+        A stretch with truth: ranges and bearings, or ranges only.
+
+    Returns
+    -------
+    Calibration
+
+    Raises
+    ------
+    ParameterError, DataError
+        If `log` is not a log, or has no truth to compare with.
     """
     require_instance("log", log, Log)
     if next(zk for zk in log.z if zk.shape[1]).shape[0] == 3:

@@ -29,6 +29,11 @@ def chi2_tail(x: float, k: int) -> float:
     Returns
     -------
     float between 0 and 1; O(k)
+
+    Raises
+    ------
+    ParameterError
+        If x is not a number or k is not a whole number of at least 1.
     """
     k = require_count("degrees of freedom k", k)
     x = require_number("x", x)
@@ -52,6 +57,11 @@ def chi2_quantile(p: float, k: int) -> float:
     Returns
     -------
     float, e.g. 5.99 for p = 0.95 and k = 2; found by bisection to 1e-12 of its size
+
+    Raises
+    ------
+    ParameterError
+        If p is not in [0, 1) or k is not a whole number of at least 1.
     """
     if not 0 <= require_number("p", p) < 1:
         raise ParameterError(f"p must be in [0, 1), got {p}; the quantile of 1 is infinite")

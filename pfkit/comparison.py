@@ -59,6 +59,11 @@ def root_mean_square(x: ArrayLike, axis: int = -1) -> Array:
     Returns
     -------
     array (...), in that unit
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If a number is not finite, or there is none.
     """
     x = require_finite("x", x)
     if x.size == 0 or x.ndim == 0:
@@ -92,6 +97,12 @@ def bootstrap_interval(
     -------
     Interval
 
+    Raises
+    ------
+    ParameterError, ShapeError
+        If a score is not finite, there is none, or the level or the number of draws makes no
+        sense.
+
     Notes
     -----
     Source: B. Efron and R. Tibshirani, An Introduction to the Bootstrap (1993). With fewer
@@ -120,6 +131,11 @@ def wilson_interval(successes: int, n: int, level: float = 0.95) -> Interval:
     Returns
     -------
     Interval
+
+    Raises
+    ------
+    ParameterError
+        If the counts are not whole numbers, or there are more successes than runs.
 
     Notes
     -----
@@ -179,6 +195,11 @@ def paired(
     Returns
     -------
     Comparison
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If the two lists of scores differ in length, or a score is not finite.
     """
     require_rng(rng)
     a, b = _runs(a, 2), _runs(b, 2)
@@ -211,6 +232,11 @@ def compare(
     Returns
     -------
     Comparison
+
+    Raises
+    ------
+    ParameterError
+        If a run is not a function, or there are fewer than two seeds.
     """
     require_callable("run_a", run_a)
     require_callable("run_b", run_b)

@@ -90,6 +90,11 @@ def nees_band(D: int, runs: int, level: float = 0.95) -> tuple[float, float]:
     Returns
     -------
     low, high : floats; above means confident and wrong, below means too modest
+
+    Raises
+    ------
+    ParameterError
+        If D or runs is not a whole number of at least 1, or the level is not in (0, 1).
     """
     D, runs = require_count("D", D), require_count("runs", runs)
     if not 0 < require_number("level", level) < 1:
@@ -112,6 +117,12 @@ def coverage(error: ArrayLike, Sigma: ArrayLike, level: float = 0.9) -> Interval
     Returns
     -------
     Interval, the share and its 95 % Wilson interval; the claim should lie inside
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If the shapes do not belong together, a number is not finite, or the level is not in (0,
+        1).
     """
     distance = nees(error, Sigma)
     if distance.ndim != 1:
@@ -140,6 +151,11 @@ def credibility(bel: Particles, truth: ArrayLike) -> Array | np.float64:
     Returns
     -------
     float or (B,), between 0 and 1
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If `bel` is not a particle set, or the truth is not one pose (per filter).
     """
     require_instance("bel", bel, Particles)
     D, batch = bel.state.shape[0], bel.log_w.shape[:-1]

@@ -162,6 +162,11 @@ def settle_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.floa
     Returns
     -------
     float or (B,), seconds; inf if the error does not end below the limit
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If the shapes do not match, a number is not finite, or the limit is not positive.
     """
     t, error = require_finite("t", t), require_finite("error", error)
     require_number("limit", limit, above=0.0)

@@ -59,7 +59,7 @@ def linearise(
     f : function of (N, P) points that returns (n, P) values
     mean : array (N,)
     Sigma : array (N, N)
-    angles : which rows of the result are angles
+    angles : tuple of int, the rows of the result that are angles
 
     Returns
     -------

@@ -157,6 +157,11 @@ def drift_time(N: int, share: float = 0.5) -> float:
     -------
     float, a number of resamplings; about 1.39 N for equal clusters
 
+    Raises
+    ------
+    ParameterError
+        If N is not a whole number of at least 2, or the share is not in [0, 1].
+
     Notes
     -----
     Solves N - 1 linear equations: O(N^3), fine up to some thousand. Source: W. J. Ewens,
@@ -199,6 +204,11 @@ def offspring_z(
     Returns
     -------
     array (M,). A count that never varies has z = 0 if it is right and infinity if it is not.
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If the weights are not one set of finite numbers >= 0, or the scheme is not a function.
     """
     require_callable("scheme", scheme)
     require_rng(rng)

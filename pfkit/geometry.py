@@ -156,8 +156,8 @@ def circular_mean(
 
     Examples
     --------
-    >>> circular_mean(np.radians([350.0, 30.0])).round(6)  # 10 degrees, not 190
-    array(0.174533)
+    >>> round(float(circular_mean(np.radians([350.0, 30.0]))), 6)  # 10 degrees, not 190
+    0.174533
     """
     theta = require_finite("theta", theta)
     weights = np.ones(()) if w is None else require_finite("w", w)

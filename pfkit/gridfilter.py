@@ -231,7 +231,7 @@ def run_grid(
     bel : PoseGrid, the belief before the first control
     motion, sensor, rng
         As in the predict functions and `update_grid`.
-    predict : `predict_by_convolution` or `predict_by_transport`
+    predict : function, `predict_by_convolution` or `predict_by_transport`
     watch : function (k, bel, log_evidence), optional
         Called after each step.
 

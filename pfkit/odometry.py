@@ -233,6 +233,11 @@ def fill_in(
     -------
     estimate : array (3, T) or (3, T, B)
     sd : array (T,) or (T, B), root of the summed position variances, metres
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If the estimates, their covariances and their instants do not belong together.
     """
     require_instance("log", log, Log)
     estimate = require_components("estimate", estimate, 3)

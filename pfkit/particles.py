@@ -170,7 +170,7 @@ def normalise(
     Examples
     --------
     >>> log_w, log_sum = normalise(np.array([-1000.0, -1000.0]))  # exp() would give 0 / 0
-    >>> np.exp(log_w), (log_sum + 1000.0).round(6)
+    >>> np.exp(log_w), round(float(log_sum) + 1000.0, 6)
     (array([0.5, 0.5]), 0.693147)
     """
     log_w = _log_weights(log_w)
@@ -220,7 +220,7 @@ def ess(log_w: ArrayLike) -> NDArray[np.float64] | np.float64:
 
     Examples
     --------
-    >>> ess(np.log([0.5, 0.25, 0.25])).round(3)
+    >>> round(float(ess(np.log([0.5, 0.25, 0.25]))), 3)
     2.667
     """
     with np.errstate(over="ignore"):

@@ -76,7 +76,7 @@ class Memory(NamedTuple):
         ----------
         log_evidence : float or (B,), the sum over K measurements
         K : int
-        alpha_slow, alpha_fast : 0 < alpha_slow < alpha_fast < 1
+        alpha_slow, alpha_fast : float, 0 < alpha_slow < alpha_fast < 1
             Memory of about 1 / alpha measurements.
 
         Returns
@@ -218,10 +218,10 @@ def augmented_step(
     bel, u, z, motion, sensor, rng, scheme
         As in `filters.step`.
     memory : Memory, ``Memory()`` at the start
-    world : map with ``sample_poses``, optional
+    world : LandmarkMap or OccupancyGrid, optional
         New particles are drawn over its free space. Without it they are drawn where the
         measurement could have been taken (`poses_seeing`; needs a `RangeBearing` sensor).
-    alpha_slow, alpha_fast : 0 < alpha_slow < alpha_fast < 1
+    alpha_slow, alpha_fast : float, 0 < alpha_slow < alpha_fast < 1
 
     Returns
     -------

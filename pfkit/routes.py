@@ -176,6 +176,11 @@ def odometry_along(
     Returns
     -------
     u : array (3, T) or (3, T, B, 1), for `OdometryMotion`
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If a pose does not have three finite components, or the motion model is another one.
     """
     truth = require_components("truth", truth, 3)
     start = require_components("start", start, 3)

@@ -94,6 +94,11 @@ def images(pose: ArrayLike, g: ArrayLike) -> Array:
     Returns
     -------
     array (3, G, ...)
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If a pose or a motion does not have three finite components.
     """
     pose, g = require_components("pose", pose, 3), require_components("g", g, 3)
     return compose(g.reshape(3, -1, *(1,) * (pose.ndim - 1)), pose[:, None])
@@ -119,6 +124,11 @@ def hypothesis_mass(bel: Particles, poses: ArrayLike, radius: float, angle: floa
     Returns
     -------
     array (H,) or (H, B), between 0 and 1
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If a pose is not finite, or a radius is not positive.
     """
     poses = require_finite("poses", require_components("poses", poses, 3))
     require_instance("bel", bel, Particles)

@@ -37,6 +37,11 @@ def tabulate(columns: Mapping[str, ArrayLike]) -> Table:
     Returns
     -------
     structured array (n,), one field per column
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        If the columns are not a mapping, or they differ in length.
     """
     require_instance("columns", columns, Mapping)
     arrays = {name: np.asarray(column) for name, column in columns.items()}
@@ -72,6 +77,11 @@ def summarise(
     -------
     structured array, one row per group in order of appearance: the columns of `by`, ``runs``,
     ``value``, ``low`` and ``high``
+
+    Raises
+    ------
+    ParameterError
+        If the table has no such column, or the level is not in (0, 1).
     """
     names = _names(table)
     by = [by] if isinstance(by, str) or not isinstance(by, Sequence) else list(by)

@@ -77,6 +77,12 @@ def tempered_update(
     -------
     Particles, weighted: resample them as after any update
     stages : int64 array, () or (B,); 1 where plain weighting was good enough
+
+    Raises
+    ------
+    ParameterError, DegenerateWeightsError
+        If an argument is not what it should be, or the measurement is impossible for all
+        particles.
     """
     require_particles(bel)
     require_method("sensor", sensor, "log_likelihood")

@@ -109,7 +109,26 @@ def load_plaza(folder: str | Path | None = None) -> Log:
 def load_log(
     folder: str | Path | None = None, robot: int | None = None, drop_unknown: bool = False
 ) -> Log:
-    """Load a log of either layout, recognised by its file names."""
+    """Load a log of either layout, recognised by its file names.
+
+    Parameters
+    ----------
+    folder : path, optional
+        Where the files are; else the environment variable PFKIT_DATA, else ``data/``.
+    robot : int, optional
+        Which robot of a folder with several; the only one if left out.
+    drop_unknown : bool
+        Leave out measurements of bar codes that the map does not know, instead of an error.
+
+    Returns
+    -------
+    Log
+
+    Raises
+    ------
+    DataError
+        If the folder holds no log that can be read; the message names file, line and reason.
+    """
     found = find_folder(folder)
     if is_plaza(found):
         return load_plaza(found)
