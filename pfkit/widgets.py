@@ -57,6 +57,10 @@ export default {
       about, seed: about.seed, values: model.get("start"), recording: null, engine, link: false,
     });
     root.pfExplorable = explorable;
+    // Keys pressed in our controls are ours, not JupyterLab's; it asks the element itself.
+    for (const e of root.querySelectorAll("input, button, select, canvas")) {
+      e.setAttribute("data-lm-suppress-shortcuts", "true");
+    }
     explorable.touch(0);
     return () => model.off("msg:custom", answered);
   },
