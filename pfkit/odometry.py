@@ -46,15 +46,15 @@ TRANSPOSE = (1, 0, 2)
 class Drift:
     r"""How fast odometry gets worse: variances per metre, radian and second.
 
-    .. math:: a = d_1 |d| + d_2 |\phi| + d_3\,\Delta t, \qquad
-              q = d_4 |d| + d_5 |\phi| + d_6\,\Delta t
+    .. math:: a = D_1 |d| + D_2 |\phi| + D_3\,\Delta t, \qquad
+              q = D_4 |d| + D_5 |\phi| + D_6\,\Delta t
 
     for a step that drives d metres and turns by phi in dt seconds.
 
     Parameters
     ----------
-    drive : (d_1, d_2, d_3), m^2 per metre, per radian and per second
-    turn : (d_4, d_5, d_6), rad^2 per metre, per radian and per second
+    drive : (D_1, D_2, D_3), m^2 per metre, per radian and per second
+    turn : (D_4, D_5, D_6), rad^2 per metre, per radian and per second
 
     Raises
     ------

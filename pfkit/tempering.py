@@ -59,7 +59,7 @@ def tempered_update(
     r"""Weigh by a measurement in stages that each keep ESS >= keep * M.
 
     .. math:: w \leftarrow w\, p(z \mid x)^{\beta_{s} - \beta_{s-1}}, \qquad
-              x \leftarrow x + \mathcal N(0,\, h^2\, \mathrm{Cov}(bel))
+              x \leftarrow x + \mathcal N(0,\, \rho^2\, \mathrm{Cov}(bel))
 
     Parameters
     ----------
@@ -70,7 +70,7 @@ def tempered_update(
     keep : float in [0, 1]
         The share of M that the effective sample size must keep in a stage; 0 is plain weighting.
     kernel : float >= 0
-        The kernel's h.
+        The kernel's width rho, in units of the cloud's own spread.
     scheme : Resampler
 
     Returns
