@@ -191,8 +191,8 @@ class Lab:
             self.answers[item.id] = {"source": _source(answer), "version": item.version}
         elif status == "predicted" and item.parse(answer)[0] != locked["choice"]:
             note = f"it stays ({locked['choice']}): a prediction is locked once made"
-        sure = "" if locked["sure"] is None else f", {locked['sure']:.0f} % sure"
-        told = f"({locked['choice']}){sure}; {note}"
+        how = "" if locked["sure"] is None else f", {locked['sure']:.0f} % sure"
+        told = f"({locked['choice']}){how}; {note}"
         return self._keep(Verdict(item.id, "predicted", item.points, item.points, told))
 
     # -- looking back ------------------------------------------------------------------------

@@ -39,8 +39,16 @@ def upper_bound(fails: int, n: int, alpha: float = 0.05) -> float:
     return high
 
 
+SIDE_BY_SIDE = 250  # runs of one call: quick, and not too large for memory
+
+
 def replay(
-    item: Experiment, answer: Any, decisions: int = 3_000, pool: int = 3_000, seed: int = 1
+    item: Experiment,
+    answer: Any,
+    decisions: int = 3_000,
+    pool: int = 3_000,
+    seed: int = 1,
+    fresh: bool = False,
 ) -> Rate:
     """Repeat a check of ``answer`` many times.
 
@@ -56,15 +64,21 @@ def replay(
         replacement, so the pool should be several times larger.
     seed : int
         Differs from the seed of the check itself.
+    fresh : bool
+        Make new runs for each decision instead: for answers whose runs are not independent.
     """
     rng = np.random.default_rng(seed)
-    chunks = [
-        item.outcomes(answer, item.runs, seed=seed + 1 + k) for k in range(-(-pool // item.runs))
-    ]
-    outcomes = np.concatenate(chunks)
+    if not fresh:
+        size = max(item.runs, min(pool, SIDE_BY_SIDE))
+        parts = [item.outcomes(answer, size, seed=seed + 1 + k) for k in range(-(-pool // size))]
+        outcomes = np.concatenate(parts)
     fails, names = 0, dict[str, int]()
-    for _ in range(decisions):
-        judged = item.decide(outcomes[rng.choice(len(outcomes), item.runs, replace=False)])
+    for k in range(decisions):
+        if fresh:
+            drawn = item.outcomes(answer, item.runs, seed=seed + 1 + k)
+        else:
+            drawn = outcomes[rng.choice(len(outcomes), item.runs, replace=False)]
+        judged = item.decide(drawn)
         if judged.fraction < 1:
             fails += 1
             name = judged.misconception.name if judged.misconception else ""

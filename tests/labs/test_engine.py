@@ -144,22 +144,21 @@ def test_check_never_raises(lab, item, capsys):
     json.dumps(lab.report())
 
 
-def test_a_loop_without_end_is_stopped(lab, monkeypatch):
+@pytest.mark.parametrize("idle", [0.0, 0.01])
+def test_a_loop_without_end_is_stopped(lab, monkeypatch, idle):
     if not hasattr(__import__("signal"), "setitimer"):
         pytest.skip("this platform has no alarm clock")
-    monkeypatch.setattr("pfkit.labs.lab.guarded.__defaults__", (0.3,))
+    monkeypatch.setattr("pfkit.labs.lab.guarded.__defaults__", (0.2,))
 
     def hangs(w):
         while True:
             try:
-                time.sleep(0.01)
+                time.sleep(idle)
             except Exception:
                 pass
 
-    start = time.perf_counter()
     verdict = lab.check("c", hangs)
-    assert verdict.status == "wrong" and "stopped after" in str(verdict)
-    assert time.perf_counter() - start < 5
+    assert verdict.status == "wrong" and "stopped, it took too long" in str(verdict)
 
 
 def test_message_first_then_properties_then_one_hint(lab):

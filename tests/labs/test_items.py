@@ -4,10 +4,11 @@ import time
 
 import pytest
 
-from pfkit.labs import Choice, Code, Experiment, Numeric, Prediction, Text, lab3, lab4
+from pfkit.labs import Choice, Code, Experiment, Numeric, Prediction, Text
+from pfkit.labs.catalogue import all_labs
 from pfkit.labs.mutants import MUTANTS
 
-LABS = {"lab3": lab3.LAB, "lab4": lab4.LAB}
+LABS = all_labs()
 ITEMS = [(lab, i) for lab in LABS for i in LABS[lab].items.values()]
 MISTAKES = [(lab, i, m) for lab, i in ITEMS for m in i.misconceptions]
 
@@ -83,7 +84,7 @@ def test_distractors_are_answered_each_in_its_own_words(lab, item, fresh):
 def test_the_library_has_at_least_twenty_mutants_all_in_use():
     library = [m for items in MUTANTS.values() for group in items.values() for m in group]
     assert len(library) >= 20
-    for lab in LABS:
+    for lab in MUTANTS:
         used = {i.id for i in LABS[lab].items.values() if isinstance(i, Code)}
         assert set(MUTANTS[lab]) <= used
 

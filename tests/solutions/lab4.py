@@ -36,11 +36,11 @@ q11a = ("a", 80)
 
 # %% q11b
 def ratio_sweep(model, ratio, rng, runs):
-    """Mean error in px of frames 50 to 250, one per run."""
+    """Mean error in px of frames 50 to 150, one per run."""
     # BEGIN SOLUTION
     bel = lab.start_of(model, lab.circle, (runs, 200), rng)
     motion = lab.model_of(model, np.sqrt(ratio * 400))
-    run = lab.track(lab.circle[:250], bel, motion, pf.Position(20.0), rng)
+    run = lab.track(lab.circle[:150], bel, motion, pf.Position(20.0), rng)
     return run.error[50:].mean(axis=0)
     # END SOLUTION
 

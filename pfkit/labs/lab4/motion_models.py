@@ -44,10 +44,10 @@ MODELS = ("fixed", "line", "circle")
 
 
 def ratio_sweep(model, ratio, rng, runs):
-    """Mean error of frames 50 to 250 on the circle; process variance = ratio * 400 px^2."""
+    """Mean error of frames 50 to 150 on the circle; process variance = ratio * 400 px^2."""
     bel = start_of(model, CIRCLE, (runs, 200), rng)
     motion = model_of(model, np.sqrt(400 * ratio))
-    return track(CIRCLE[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+    return track(CIRCLE[:150], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
 
 
 def _ratios(f, rng, runs):
@@ -87,7 +87,7 @@ Q11 = Question(
             measure=_ratios,
             reference=ratio_sweep,
             hints=(
-                "One number per run: the mean error of frames 50 to 250.",
+                "One number per run: the mean error of frames 50 to 150.",
                 "lab.model_of(name, sigma) and lab.start_of(name, log, shape, rng) help.",
                 "sigma = np.sqrt(400 * ratio).",
             ),
