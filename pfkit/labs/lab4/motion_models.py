@@ -83,7 +83,7 @@ Q11 = Question(
             ".01 or less",
             test="smallest median over runs, per model",
             runs=6,
-            margin="11.05 px (sd .10) against 12.44 for fixed; line and circle gain 3 px: 12 sd",
+            margin="fixed 10.6 px (sd .10) against 12.3; line and circle gain 2.4 and 3.3 px: 9 sd",
             measure=_ratios,
             reference=ratio_sweep,
             hints=(
