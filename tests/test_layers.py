@@ -47,7 +47,7 @@ LAYERS: dict[str, list[str]] = {
     "L4": [
         *["odometry", "routes", "driving", "simulate", "datasets", "logfile"],
         *["comparison", "table"],
-        *["diagnostics", "observability", "calibration", "consistency", "divergence"],
+        *["diagnostics", "calibration", "consistency"],
         *["symmetry", "localise"],
     ],
     "L5": ["study"],
@@ -142,6 +142,10 @@ def test_the_package_itself_re_exports_the_core_only():
     source = (PACKAGE / "__init__.py").read_text(encoding="utf-8")
     used = {name.split(".")[1] for name, _ in imports(source) if name.startswith("pfkit.")}
     assert used <= set(ORDER)
+
+
+def test_the_table_names_no_module_that_is_gone():
+    assert {*ORDER, *EDGE} - {"labs.grade", "labs.release"} <= {module_of(p) for p in MODULES}
 
 
 @pytest.mark.parametrize(

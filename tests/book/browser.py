@@ -28,7 +28,7 @@ FLAGS = (
 WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 SETTLE = 400  # ms: the theme waits before it reacts to a new width
 LARGEST_PAGE = 400_000  # bytes beyond what all pages share
-SHARED = ("/_static/", "/live/")  # all pages, or all pages that compute, load the same
+SHARED = ("/_static/", "/live/", "/searchindex.js")  # what all pages, or all that compute, load
 FORWARDS = 'http-equiv="refresh"'
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
@@ -146,7 +146,7 @@ def look(tab: Any, base: str, page: str, access: bool = True) -> list[str]:
     found = check_content(tab)
     for size in (WIDE, NARROW):
         tab.set_viewport_size(size)
-        tab.wait_for_timeout(SETTLE if size == NARROW else 0)
+        tab.wait_for_timeout(SETTLE if access and size == NARROW else 0)
         found += [f"{text} at {size['width']} px" for text in check_width(tab)]
         if access:
             found += [f"{text} at {size['width']} px" for text in check_access(tab)]
