@@ -109,5 +109,5 @@ class LikelihoodField(Sensor):
         for rk, a, b in zip(z[0], along, across, strict=True):
             i = np.clip(column + a * ahead - b * aside, 0, columns - 1).astype(np.int64)
             j = np.clip(row + a * aside + b * ahead, 0, rows - 1).astype(np.int64)
-            total += np.where(rk < self.r_max, log_q.take(j * columns + i), 0.0)
+            total += np.where(rk < self.r_max, np.take(log_q, j * columns + i), 0.0)
         return total

@@ -135,7 +135,7 @@ class RayCaster:
             look = cell[1] * width
             look += cell[0]
             look += rays[4]
-            k = squares.take(look.astype(np.int64))
+            k = np.take(squares, look.astype(np.int64))
             clear = k > 0
             arrived, flying = np.flatnonzero(~clear), np.flatnonzero(clear)
             if arrived.size:

@@ -25,6 +25,8 @@ SCENES = {
     "corridor": ("pfkit.explore.corridor", "Corridor"),
     "drive": ("pfkit.explore.drive", "Drive"),
     "mower": ("pfkit.explore.mower", "Mower"),
+    "exact": ("pfkit.explore.exact", "Exact"),
+    "office": ("pfkit.explore.office", "Office"),
     "proposal": ("pfkit.explore.proposal", "Proposal"),
 }
 

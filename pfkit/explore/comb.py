@@ -20,10 +20,11 @@ from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
 from pfkit.resampling import SCHEMES
 
-LETTERS = "ABCDE"
+LETTERS = "12345"
 COLOURS = ("c1", "c2", "c3", "c4", "c5")
 WEIGHTS = {
     "chapter": (0.40, 0.25, 0.15, 0.12, 0.08),
+    "halves": (0.5, 0.5, 0.0, 0.0, 0.0),
     "equal": (0.2, 0.2, 0.2, 0.2, 0.2),
     "one": (0.90, 0.04, 0.03, 0.02, 0.01),
     "fifths": (0.30, 0.30, 0.20, 0.10, 0.10),
@@ -89,6 +90,7 @@ class Comb(Scene):
             choices=(
                 ("chapter", "of the chapter"),
                 ("fifths", "n·w nearly whole"),
+                ("halves", "two halves"),
                 ("equal", "equal"),
                 ("one", "one takes nearly all"),
             ),
@@ -135,7 +137,7 @@ class Comb(Scene):
             ("weights", "n", "pace", "scheme", "spread"),
             missions=(
                 Mission(
-                    "Watch ten draws. Which scheme never gives particle A fewer than floor(n w) "
+                    "Watch ten draws. Which scheme never gives particle 1 fewer than floor(n w) "
                     "copies, nor more than one above? Then raise the draws per tick past 50 and "
                     "compare the variance bars.",
                     lambda s: s.draws > 500,
@@ -151,7 +153,7 @@ class Comb(Scene):
                     lambda s: s.values["scheme"] == "multinomial" and s.founders == 1,
                 ),
             ),
-            alt="A bar of length one split between five particles A to E in proportion to their "
+            alt="A bar of length one split between five particles in proportion to their "
             "weights. Below it five rows, one per resampling scheme, with teeth that fall on the "
             "bar; beside each row a bar with the measured variance of the offspring counts. At the "
             "bottom the family tree of 24 particles, whose lines of descent merge.",
@@ -233,7 +235,7 @@ class Comb(Scene):
             pen.segments(colour, mine, 0, mine, 0.5, width=2.5)
             pen.symbols(colour, "circle", mine, np.full(mine.shape, 0.55), size=7)
         counts = np.bincount(picks, minlength=5)
-        tally = " ".join(f"{LETTERS[i]}{counts[i]}" for i in range(5))
+        tally = "copies " + " ".join(str(c) for c in counts)
         pen.text("ink", 0, 0.92, name, size=12)
         pen.text("muted", 1, 0.92, tally, size=11, anchor=1)
         pen.view((0.69, bottom, 0.29, 0.085), (0, 1), (0, 1), frame=False)

@@ -43,8 +43,8 @@ class Corridor(Scene):
             "Hit rate",
             "range",
             0.9,
-            lo=0.01,
-            hi=0.99,
+            lo=0.0,
+            hi=1.0,
             step=0.01,
             help="How often a door that is there is seen.",
         ),
@@ -53,8 +53,8 @@ class Corridor(Scene):
             "False alarm rate",
             "range",
             0.08,
-            lo=0.01,
-            hi=0.99,
+            lo=0.0,
+            hi=1.0,
             step=0.01,
             help="How often a door is seen where there is wall.",
         ),
@@ -77,6 +77,13 @@ class Corridor(Scene):
             hi=0.5,
             step=0.05,
             help="How often a move ends one cell too late.",
+        ),
+        Control(
+            "honest",
+            "The detector is as the sliders say",
+            "toggle",
+            True,
+            help="Off, it really has 90 % and 8 %, whatever the filter believes.",
         ),
         Control(
             "doors",
@@ -165,16 +172,21 @@ class Corridor(Scene):
 
     def _look(self) -> None:
         hit, false = self.values["hit"], self.values["false"]
-        self.saw = bool(self.rng.random() < (hit if self.is_door[self.robot] else false))
+        real = (hit, false) if self.values["honest"] else (0.9, 0.08)
+        self.saw = bool(self.rng.random() < real[0 if self.is_door[self.robot] else 1])
         self.predicted = self.bel
         self.likelihood = pf.door_likelihood(self.is_door, self.saw, hit, false)
         before = self._entropy()
-        self.bel, evidence = pf.update_1d(self.bel, self.likelihood)
-        self.evidence = float(evidence)
-        self.information = before - self._entropy()
         self.looks += 1
         self.since_look = 0
         self.phase = "look"
+        try:
+            self.bel, evidence = pf.update_1d(self.bel, self.likelihood)
+        except pf.DegenerateWeightsError:  # no cell can explain what was seen: show just that
+            self.evidence = 0.0
+            return
+        self.evidence = float(evidence)
+        self.information = before - self._entropy()
 
     def _entropy(self) -> float:
         p = self.bel[self.bel > 0]
@@ -187,9 +199,14 @@ class Corridor(Scene):
             "most likely": f"cell {best}",
             "belief there": float(100 * self.bel[self.robot]),
             "entropy": self._entropy(),
-            "saw": "nothing yet" if self.saw is None else "door" if self.saw else "wall",
+            "saw": self._seen(),
             "evidence": self.evidence,
         }
+
+    def _seen(self) -> str:
+        if self.saw is None:
+            return "nothing yet"
+        return ("door" if self.saw else "wall") + (", impossible" if self.evidence == 0 else "")
 
     def draw(self, pen: Pen) -> None:
         cells = np.arange(CELLS)

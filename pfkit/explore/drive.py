@@ -21,8 +21,6 @@ from pfkit.explore.drive_view import draw_drive
 from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Panel, Readouts, Scene
 
-DT = 1 / 30
-LOOK_EVERY = 12
 ALPHA = np.array([0.20, 0.02, 0.25, 0.20, 0.02, 0.02])
 ROUTES = {
     "arena": np.array([[2.0, 8.0, 8.4, 5.0, 1.6], [2.4, 1.6, 6.0, 4.6, 6.6]]),
@@ -35,6 +33,8 @@ class Drive(Scene):
     name = "drive"
     size = (760, 470)
     rate = 60.0
+    dt: ClassVar[float] = 1 / 30  # seconds of robot time in a tick
+    look_every: ClassVar[int] = 12
     record_steps = 480
     record_every = 10
     still_at = 150
@@ -65,18 +65,23 @@ class Drive(Scene):
         if self.layout == "square":
             self.bounds = (0.0, 15.0, 0.0, 15.0)
         self.selected = 0
-        self.driver = pf.PurePursuit(ROUTES[self.layout], v=1.0, dt=DT, lookahead=0.9)
+        self.driver = pf.PurePursuit(ROUTES[self.layout], v=1.0, dt=self.dt, lookahead=0.9)
         first, second = ROUTES[self.layout].T[:2]
         self.truth = np.array([*first, np.arctan2(*(second - first)[::-1])])
+        self._begin()
+
+    def _begin(self) -> None:
+        """The filter's start, once the world and the robot's place in it are known."""
         self.goal: tuple[float, float] | None = None
         self.z = np.empty((0, 0))
         self.z_age, self.false = 99, np.empty(0, bool)
+        self.given: np.ndarray | None = None
         self.counts = {"resampled": 0, "false": 0, "rejected": 0}
         self.kidnapped = False
         self.history: list[tuple[float, float]] = []
         self.trail: list[np.ndarray] = [self.truth.copy()]
         self._build()
-        self.bel = self._prior(int(v["M"]))
+        self.bel = self._prior(int(self.values["M"]))
         self.ess = float(self.bel.ess)
         self._judge_filter()
 
@@ -108,22 +113,24 @@ class Drive(Scene):
             model = pf.OutlierMixture(model, max(v["epsilon"] / 100, 1e-6), self.faults.density)
         self.model = model
         self.sight = pf.Sight(self.world, v["sight"])
-        self.motion = pf.VelocityMotion(tuple(ALPHA * v["noise"] ** 2))
-        self.believed = pf.VelocityMotion(tuple(ALPHA * (v["noise"] * v["trust"]) ** 2))
+        alpha = ALPHA * v["noise"] ** 2 / (30 * self.dt)  # the same drift per second at any dt
+        self.motion = pf.VelocityMotion(tuple(alpha))
+        self.believed = pf.VelocityMotion(tuple(alpha * v["trust"] ** 2))
 
     # ---- one tick ---------------------------------------------------------------------------
     def advance(self) -> None:
         v = self.values
-        u = self._command()
+        self.u = u = self._command()
         if v["moves"]:
             self.truth = self._inside(self.motion.sample(self.truth, u, self.rng))
         self.z_age += 1
+        self.given = None
         if v["show"] != "map":
             if v["do_predict"]:
                 self.bel = pf.predict(self.bel, u, self.believed, self.rng)
             else:
                 self.bel = pf.Particles(self.believed.mean(self.bel.state, u), self.bel.log_w)
-        if self.ticks % LOOK_EVERY == LOOK_EVERY - 1:
+        if self.ticks % self.look_every == self.look_every - 1:
             self._look()
         if self.ticks % 4 == 0:
             self.trail = [*self.trail[-220:], self.truth.copy()]
@@ -133,20 +140,20 @@ class Drive(Scene):
         """What the robot is told: (v, omega, dt), by autopilot, keys or pointer."""
         v = self.values
         if not v["moves"]:
-            return np.array([0.0, 0.0, DT])
+            return np.array([0.0, 0.0, self.dt])
         if v["hand"] == "landmark" and (v["throttle"] or v["steer"]):
-            self._nudge(-v["steer"] * 2.5 * DT, v["throttle"] * 2.5 * DT)
-            return np.array([0.0, 0.0, DT])
+            self._nudge(-v["steer"] * 2.5 * self.dt, v["throttle"] * 2.5 * self.dt)
+            return np.array([0.0, 0.0, self.dt])
         if self.goal is not None:
             dx, dy = self.goal[0] - self.truth[0], self.goal[1] - self.truth[1]
             turn = float(pf.wrap(np.arctan2(dy, dx) - self.truth[2]))
             speed = min(1.4, 2 * np.hypot(dx, dy)) * max(0.0, np.cos(turn))
-            return np.array([speed, np.clip(4 * turn, -2.2, 2.2), DT])
+            return np.array([speed, np.clip(4 * turn, -2.2, 2.2), self.dt])
         if v["throttle"] or v["steer"]:
-            return np.array([1.2 * v["throttle"], 1.8 * v["steer"], DT])
+            return np.array([1.2 * v["throttle"], 1.8 * v["steer"], self.dt])
         if v["autopilot"]:
             return self.driver(self.ticks, self.truth)
-        return np.array([0.0, 0.0, DT])
+        return np.array([0.0, 0.0, self.dt])
 
     def _inside(self, pose: np.ndarray) -> np.ndarray:
         x0, x1, y0, y1 = self.bounds
@@ -156,18 +163,11 @@ class Drive(Scene):
     def _look(self) -> None:
         """Measure what is in sight, and let the filter use it."""
         v = self.values
-        seen = self.world.ids[self.sight(self.truth)]
         self.z_age = 0
-        self.seen = seen
-        if seen.size == 0:
-            self.z = np.empty((0, 0))
+        self.z = self._measure()
+        if self.z.size == 0 or v["show"] == "map" or not v["do_weigh"]:
             return
-        z = self.real.sample(self.truth, self.rng, ids=seen)
-        self.z, self.false = self.faults.spoil(z, self.rng)
-        self.counts["false"] += int(self.false.sum())
-        if v["show"] == "map" or not v["do_weigh"]:
-            return
-        given = self.z[:-1] if self.anonymous else self.z
+        self.given = given = self.z[:-1] if self.anonymous else self.z
         if v["defence"] == "gate":
             self.counts["rejected"] += int((~self.model.accepts(given, self.bel.state)).sum())
         self.bel, _ = pf.update(self.bel, given, self.model)
@@ -176,6 +176,16 @@ class Drive(Scene):
             self.bel = pf.resample(self.bel, pf.SCHEMES[v["scheme"]], self.rng)
             self.counts["resampled"] += 1
             self._inject(v["fresh"] / 100)
+
+    def _measure(self) -> np.ndarray:
+        """One reading of each landmark in sight, some of them false: (n, K)."""
+        self.seen = self.world.ids[self.sight(self.truth)]
+        if self.seen.size == 0:
+            return np.empty((0, 0))
+        z = self.real.sample(self.truth, self.rng, ids=self.seen)
+        z, self.false = self.faults.spoil(z, self.rng)
+        self.counts["false"] += int(self.false.sum())
+        return z
 
     def _inject(self, share: float) -> None:
         """Replace a share of the equally weighted set by poses drawn anywhere."""
@@ -295,7 +305,7 @@ class Drive(Scene):
                 "in sight": float(self.sight(self.truth).sum()),
             }
         out: Readouts = {
-            "time": self.ticks * DT,
+            "time": self.ticks * self.dt,
             "error": self.error,
             "heading error": float(np.degrees(self.turn_error)),
             "spread": self.spread,

@@ -25,7 +25,7 @@ def draw_drive(s: Drive, pen: Pen) -> None:
     else:
         trail = np.array(s.trail)
         pen.line("truth", trail[:, 0], trail[:, 1], width=1.5, dash=4)
-        _cloud(s, pen)
+        draw_cloud(s, pen)
     _landmarks(s, pen)
     if s.z_age < FADE and s.z.size and not alone:
         _beams(s, pen)
@@ -36,11 +36,11 @@ def draw_drive(s: Drive, pen: Pen) -> None:
     pen.robots("truth", *s.truth, radius=0.22)
     if alone:
         return
-    _estimate(s, pen)
-    _charts(s, pen)
+    draw_estimate(s, pen)
+    draw_charts(s, pen)
 
 
-def _cloud(s: Drive, pen: Pen) -> None:
+def draw_cloud(s: Drive, pen: Pen) -> None:
     x, y, theta = s.bel.state
     if s.bel.M <= 1500:
         pen.quills("particle", x, y, theta, length=6, size=3)
@@ -82,7 +82,7 @@ def _beams(s: Drive, pen: Pen) -> None:
             pen.symbols(style, shape, ends[0][keep], ends[1][keep], size=9 if bad else 6)
 
 
-def _estimate(s: Drive, pen: Pen) -> None:
+def draw_estimate(s: Drive, pen: Pen) -> None:
     x, y, _ = s.estimate
     (a, c), (_, b) = s.Sigma[0, :2], s.Sigma[1, :2]
     middle, half = (a + b) / 2, np.hypot((a - b) / 2, c)
@@ -92,7 +92,7 @@ def _estimate(s: Drive, pen: Pen) -> None:
     pen.symbols("estimate", "plus", x, y, size=14)
 
 
-def _charts(s: Drive, pen: Pen) -> None:
+def draw_charts(s: Drive, pen: Pen, landmarks: bool = True) -> None:
     """Legend, effective share of the particles, and error, over the last ten seconds."""
     left, width = 0.765, 0.225
     pen.view((left, 0.74, width, 0.24), (0, 1), (0, 4), frame=False)
@@ -102,8 +102,9 @@ def _charts(s: Drive, pen: Pen) -> None:
     pen.text("ink", 0.14, 2.6, "mean, 2-sigma ellipse", size=11)
     pen.points("particle", np.array([0.03, 0.06, 0.09]), np.array([1.6, 1.85, 1.6]), size=4)
     pen.text("ink", 0.14, 1.7, f"{s.bel.M} particles", size=11)
-    pen.symbols("landmark", "diamond", 0.06, 0.8, size=13)
-    pen.text("ink", 0.14, 0.8, "landmark", size=11)
+    if landmarks:
+        pen.symbols("landmark", "diamond", 0.06, 0.8, size=13)
+        pen.text("ink", 0.14, 0.8, "landmark", size=11)
     if not s.history:
         return
     share, error = np.array(s.history).T

@@ -207,3 +207,48 @@ def test_landmarks_can_be_moved_added_and_removed():
     s.set("point", (x, y, 0))
     s.set("point", (4.0, 4.0, 1))
     assert s.landmarks[:, 0] == pytest.approx([4, 4]) and isinstance(s.world, pf.LandmarkMap)
+
+
+def test_more_particles_come_closer_to_the_exact_posterior():
+    def nats(M):
+        out = []
+        for seed in range(4):
+            s = scene("exact", seed=seed)
+            s.set("M", M)
+            for _ in range(8):
+                s.step()
+            out.append(s.nats)
+        return np.mean(out)
+
+    assert nats(4000) < nats(60)
+
+
+def test_the_grid_does_not_touch_the_cloud():
+    with_grid, without = scene("exact", seed=3), scene("exact", seed=3)
+    without.grid = None
+    for _ in range(5):
+        with_grid.step()
+        super(type(without), without).advance()
+        without.ticks += 1
+    assert with_grid.bel.state == pytest.approx(without.bel.state)
+
+
+@pytest.mark.parametrize("model", ["beam", "field"])
+def test_office_is_tracked_by_either_sensor_model(model):
+    s = scene("office", seed=2)
+    for name, value in (("prior", "known"), ("M", 300), ("model", model)):
+        s.set(name, value)
+    for _ in range(200):
+        s.step()
+    assert s.error < 0.5
+
+
+def test_the_robot_stays_out_of_walls():
+    s = scene("office", seed=5)
+    s.set("autopilot", False)
+    for steer in (0.0, 1.0, -1.0):
+        s.set("throttle", 1.0)
+        s.set("steer", steer)
+        for _ in range(150):
+            s.step()
+            assert s.world.contains(*s.truth[:2])
