@@ -1,10 +1,13 @@
 """Chapter 14: a real robot. Questions on reading, calibrating and judging recorded logs."""
 
+import json
 from functools import cache
+from importlib.resources import files
 
 import numpy as np
 
 import pfkit as pf
+from pfkit.explore.mower import recorded
 from pfkit.labs import (
     Choice,
     Code,
@@ -301,16 +304,10 @@ biased = Prediction(
 )
 
 
-@cache
-def _minute():
-    log = pf.load_plaza("plaza2")
-    log = log[: int(np.searchsorted(log.t, 60.0))]
-    return pf.compose_odometry(log, pf.Drift((0.005, 0, 0), (5e-5, 0.002, 0)))
-
-
 def minute():
-    """The first minute of Plaza 2, one step for each range."""
-    return _minute()
+    """The first minute of Plaza 2, one step for each range (packed, so that it runs in a page)."""
+    log = recorded()["log"]
+    return log[: int(np.searchsorted(log.t, 60.0))]
 
 
 def _biased(rng):
@@ -392,9 +389,10 @@ lost = Prediction(
 
 @cache
 def _stretch():
-    log = pf.load_mrclam("mrclam_twin")
-    i, j = np.searchsorted(log.t, (60.0, 70.0))
-    return pf.compose_odometry(log[int(i) : int(j)], pf.Drift((0.02, 0, 0), (0.05, 0.05, 0.001)))
+    raw = json.loads(files("pfkit.labs").joinpath("ch14_stretch.json").read_text("ascii"))
+    world = pf.LandmarkMap(np.array(raw["landmarks"]), raw["ids"], raw["bounds"])
+    z = [np.array(zk).reshape(3, -1) for zk in raw["z"]]
+    return pf.Log(np.array(raw["t"]), np.array(raw["u"]), z, np.array(raw["truth"]), world=world)
 
 
 def stretch():

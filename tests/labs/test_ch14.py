@@ -1,10 +1,19 @@
 """Items of chapter 14: references pass, wrong answers earn their own hints."""
 
+import json
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
+import pfkit as pf
 from pfkit.labs import Choice, Experiment, Numeric, Prediction, ch14
 from pfkit.labs.replay import replay
+
+ROOT = Path(__file__).parents[2]
+sys.path.insert(0, str(ROOT / "tools"))
+import make_excerpts  # noqa: E402
 
 ITEMS = list(ch14.LAB.items.values())
 MISTAKES = [(item, m) for item in ITEMS for m in item.misconceptions]
@@ -29,7 +38,9 @@ def test_reference_passes(item):
     assert verdict.status in ("passed", "recorded", "predicted"), str(verdict)
 
 
-@pytest.mark.parametrize(("item", "mistake"), MISTAKES, ids=lambda v: getattr(v, "name", None) or v.id)
+@pytest.mark.parametrize(
+    ("item", "mistake"), MISTAKES, ids=lambda v: getattr(v, "name", None) or v.id
+)
 def test_wrong_example_earns_its_own_hint(item, mistake):
     verdict = answered(item, mistake.example)
     assert verdict.status in ("partial", "wrong"), str(verdict)
@@ -69,3 +80,12 @@ def test_experiments_declare_what_they_test():
     for item in ITEMS:
         if isinstance(item, Experiment):
             assert item.claim and item.test and item.margin and item.false_fail <= 1e-3
+
+
+def test_the_stretch_is_made_from_the_twin():
+    kept = json.loads(make_excerpts.STRETCH.read_text())
+    made = make_excerpts.pack_stretch(pf.load_mrclam(ROOT / "data" / "mrclam_twin"))
+    for name in ("t", "u", "truth", "landmarks"):
+        np.testing.assert_allclose(kept[name], made[name], atol=2e-4)
+    assert [len(zk[0]) for zk in kept["z"]] == [len(zk[0]) for zk in made["z"]]
+    assert len(ch14.stretch()) == len(kept["t"]) and len(ch14.minute()) > 200
