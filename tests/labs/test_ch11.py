@@ -1,10 +1,12 @@
 """Chapter 11: right answers pass, wrong ones earn their own hint, experiments rarely fail."""
 
 import time
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import pfkit as pf
 from pfkit.labs import Choice, Numeric, ch11, replay
 from pfkit.labs.replay import upper_bound
 
@@ -69,3 +71,23 @@ def test_alive_fails_a_right_answer_rarely():
     item = LAB.items["alive_x"]
     rate = replay(item, item.reference, decisions=3000, pool=200)
     assert rate.fails == 0, rate
+
+
+def test_published_solutions_pass():
+    """With the chapter's own names in scope, as in the notebook."""
+    world = pf.worlds.square()
+    scope = {
+        "np": np,
+        "pf": pf,
+        "world": world,
+        "start": pf.worlds.SQUARE_START,
+        "g": pf.symmetries(world),
+        "sensor": pf.MaximumLikelihood(pf.RangeBearing(world, 0.3, 0.1)),
+        "motion": pf.VelocityMotion(alpha=(0.02, 0.002, 0.002, 0.02, 0.002, 0.002)),
+        "forward": np.tile([[1.0], [0.0], [2.0]], 6),
+    }
+    path = Path(__file__).parents[1] / "solutions" / "ch11.py"
+    exec(path.read_text(encoding="utf-8"), scope)
+    for item in ITEMS:
+        verdict = answered(item, scope[item.id])
+        assert verdict.status in ("passed", "recorded", "predicted"), str(verdict)
