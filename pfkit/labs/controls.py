@@ -3,11 +3,16 @@
 `offer` is called when a choice is still unanswered. It shows controls only if the cell was run by
 a person in a front end: JupyterLab, Notebook 7 and VS Code send the id of the cell with each
 request, programs that execute notebooks (nbclient, nbval, the grader) do not. So a stored notebook
-never holds a widget that nothing drives, and plain calls always work.
+never holds a widget that nothing drives, and plain calls always work. ``PFKIT_WIDGETS=off``
+switches controls off, as it does for explorables.
+
+With the keyboard: Tab from option to option, Space to choose, Tab and Space for the button
+(tried in JupyterLab, which keeps the arrow keys for itself).
 """
 
 from __future__ import annotations
 
+import os
 import sys
 from typing import TYPE_CHECKING, Any
 
@@ -32,7 +37,8 @@ def front_end_present() -> bool:
 
 def offer(lab: Lab, item: Item) -> bool:
     """Show controls for a choice or a prediction; False where that is not possible."""
-    if not isinstance(item, Choice | Prediction) or not front_end_present():
+    off = os.environ.get("PFKIT_WIDGETS") == "off"
+    if off or not isinstance(item, Choice | Prediction) or not front_end_present():
         return False
     try:
         import ipywidgets

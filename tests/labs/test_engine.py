@@ -3,6 +3,7 @@
 import json
 import sys
 import time
+import types
 
 import numpy as np
 import pytest
@@ -309,3 +310,24 @@ def test_controls_drive_the_lab(lab, monkeypatch):
     radio.value, sure.value = "a", 85
     button.click()
     assert lab.predictions["p"]["choice"] == "a" and lab.predictions["p"]["sure"] == 85
+
+
+def test_controls_are_offered_only_where_a_person_runs_the_cell(lab, monkeypatch):
+    pytest.importorskip("ipywidgets")
+    request = {"metadata": {}}
+    kernel = types.SimpleNamespace(get_parent=lambda channel: request)
+    shell = types.SimpleNamespace(kernel=kernel)
+    shown = []
+    monkeypatch.setattr("IPython.get_ipython", lambda: shell)
+    monkeypatch.setattr("IPython.display.display", shown.append)
+    lab.check("m", ...)  # nbclient, nbval, the grader
+    assert not shown
+    request["metadata"]["cellId"] = "c0"  # JupyterLab, Notebook 7, VS Code
+    lab.check("m", ...)
+    lab.predict("p", ...)
+    assert len(shown) == 2
+    lab.check("n", ...)  # a number needs no control
+    lab.check("m", "b")  # answered
+    monkeypatch.setenv("PFKIT_WIDGETS", "off")
+    lab.check("m", ...)
+    assert len(shown) == 2
