@@ -14,14 +14,18 @@ import numpy as np
 
 
 def accept_int64() -> None:
-    """On a 32-bit NumPy let `bincount`, `repeat` and `take` accept int64; elsewhere do nothing."""
+    """On a 32-bit NumPy let `bincount`, `choose`, `repeat` and `take` accept int64."""
     if np.dtype(np.intp).itemsize >= 8 or getattr(np.bincount, "takes_int64", False):
         return
-    bincount, repeat, take = np.bincount, np.repeat, np.take
+    bincount, choose, repeat, take = np.bincount, np.choose, np.repeat, np.take
 
     @functools.wraps(bincount)
     def bincount_any(x, /, weights=None, minlength=0):
         return bincount(_narrow(x), weights, minlength)
+
+    @functools.wraps(choose)
+    def choose_any(a, choices, out=None, mode="raise"):
+        return choose(_narrow(a), choices, out, mode)
 
     @functools.wraps(repeat)
     def repeat_any(a, repeats, axis=None):
@@ -32,7 +36,8 @@ def accept_int64() -> None:
         return take(a, _narrow(indices), axis, out, mode)
 
     bincount_any.takes_int64 = True  # type: ignore[attr-defined]
-    np.bincount, np.repeat, np.take = bincount_any, repeat_any, take_any
+    np.bincount, np.choose = bincount_any, choose_any
+    np.repeat, np.take = repeat_any, take_any
 
 
 def _narrow(values):
