@@ -94,11 +94,10 @@ class ComposedMotion:
         """Each particle moves with an error of its own: (3, ...), (12,) -> (3, ...)."""
         u = require_components("u", u, 12)
         pose = require_components("pose", pose, 3)
-        xi = rng.standard_normal(pose.shape)
-        dx, dy, turn = (u[i] + sum(u[3 + 3 * i + j] * xi[j] for j in range(3)) for i in range(3))
-        x, y, theta = pose
-        c, s = np.cos(theta), np.sin(theta)
-        return np.stack((x + c * dx - s * dy, y + s * dx + c * dy, wrap(theta + turn)))
+        L = u[3:].reshape(3, 3, *u.shape[1:])
+        error = np.einsum("ij...,j...->i...", L, rng.standard_normal(pose.shape))
+        column = (..., *(None,) * (pose.ndim - u.ndim))
+        return compose(pose, u[:3][column] + error)
 
 
 class Odometer:

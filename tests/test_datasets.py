@@ -86,9 +86,18 @@ def test_both_layouts_give_the_same_log(folder, tmp_path_factory):
         lambda raw: b"\xef\xbb\xbf" + raw,
         lambda raw: b"# more\n\n" + raw.replace(b" ", b" \t "),
         lambda raw: raw.rstrip(b"\n"),
+        lambda raw: raw.replace(b"\n", b"  # said later\n"),
         gzip.compress,
     ],
-    ids=["CRLF", "CR", "BOM", "comments and tabs", "no last newline", "gzip inside"],
+    ids=[
+        "CRLF",
+        "CR",
+        "BOM",
+        "comments and tabs",
+        "no last newline",
+        "late comments",
+        "gzip inside",
+    ],
 )
 @pytest.mark.parametrize("name", FILES)
 def test_harmless_differences_change_nothing(folder, name, change):
@@ -117,6 +126,10 @@ DEFECTS = {
     "short row": (lambda lines: [*lines[:-1], lines[-1].split()[0]], "expected"),
     "long row": (lambda lines: [*lines[:-1], lines[-1] + " 1"], "expected"),
     "text": (lambda lines: [*lines[:-1], lines[-1].rsplit(" ", 1)[0] + " abc"], "'abc'"),
+    "digits with underscores": (
+        lambda lines: [*lines[:-1], lines[-1].rsplit(" ", 1)[0] + " 1_0"],
+        "'1_0'",
+    ),
     "NaN": (lambda lines: [*lines[:-1], lines[-1].rsplit(" ", 1)[0] + " nan"], "finite"),
     "infinite": (lambda lines: [*lines[:-1], lines[-1].rsplit(" ", 1)[0] + " inf"], "finite"),
 }

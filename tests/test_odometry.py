@@ -89,6 +89,17 @@ def test_samples_have_the_composed_covariance():
     assert np.abs((x.mean(axis=1) - u[:3]) / sd * np.sqrt(M)).max() < 5
 
 
+def test_a_batch_may_have_a_motion_for_each_filter():
+    short = pf.compose_odometry(some_log(), DRIFT)
+    pose = np.zeros((3, 2, 400))
+    u = short.u[:, :2, None]
+    both = pf.ComposedMotion().sample(pose, u, np.random.default_rng(3))
+    assert both.shape == (3, 2, 400)
+    one = pf.ComposedMotion().sample(pose, u[:, 0, 0], np.random.default_rng(3))
+    np.testing.assert_allclose(both[:, 0], one[:, 0])
+    assert abs(both[:, 1] - one[:, 1]).max() > 1e-3
+
+
 def test_a_robot_that_stands_still_without_noise_stays():
     log = pf.Log(np.arange(3.0), np.zeros((3, 3)), [np.zeros((3, 0))] * 3)
     short = pf.compose_odometry(log, DRIFT)
