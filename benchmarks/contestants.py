@@ -4,6 +4,7 @@ The models of the rivals are written once, plainly, as a careful user of that li
 them (NumPy over all particles where the library allows it), and then left alone.
 """
 
+# ruff: noqa: NPY002 - the rivals draw from NumPy's global generator, and so do their models
 from __future__ import annotations
 
 import ctypes

@@ -9,7 +9,7 @@ from collections.abc import Callable, Mapping
 for name in ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS"):
     os.environ.setdefault(name, "1")  # before NumPy starts its threads
 
-import numpy as np
+import numpy as np  # noqa: E402
 
 
 def interleave(

@@ -18,6 +18,7 @@ Everything works for one filter ``(D, M)`` and for B side by side ``(D, B, M)``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass
 from typing import NamedTuple
@@ -38,7 +39,7 @@ from pfkit.errors import (
 from pfkit.estimators import covariance, mean_pose
 from pfkit.log import Log
 from pfkit.motion import MotionModel
-from pfkit.particles import Particles, equal_log_weights, normalise, require_particles
+from pfkit.particles import Particles, normalise, require_particles
 from pfkit.resampling import Resampler, systematic
 from pfkit.sensors import SensorModel
 from pfkit.triggers import Trigger, ess_below
@@ -189,7 +190,7 @@ def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
         state = np.take(bel.state, ancestors, axis=1)
     else:
         state = np.take_along_axis(bel.state, ancestors[None], axis=-1)
-    return Particles.trusted(state, equal_log_weights(ancestors.shape))
+    return Particles.trusted(state, np.full(ancestors.shape, -math.log(ancestors.shape[-1])))
 
 
 def resample(

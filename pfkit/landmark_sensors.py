@@ -26,7 +26,7 @@ from pfkit.errors import (
     require_method,
     require_positive,
 )
-from pfkit.geometry import wrap
+from pfkit.geometry import _wrap, wrap
 from pfkit.maps import LandmarkMap
 from pfkit.sensors import Sensor, draw_errors, error_density, require_nu
 
@@ -108,7 +108,7 @@ class RangeBearing(Sensor):
         mx, my = self.world.locate(s)
         dx, dy = mx - x, my - y
         range_error = r - np.sqrt(dx * dx + dy * dy)
-        bearing_error = wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)
+        bearing_error = _wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)
         return error_density(range_error, self.sigma_r, self.nu) + error_density(
             bearing_error, self.sigma_phi, self.nu
         )
@@ -168,7 +168,7 @@ class Bearing(Sensor):
         phi, s = zk
         x, y, theta = pose
         mx, my = self.world.locate(s)
-        error = wrap(phi - self.bias_phi - np.arctan2(my - y, mx - x) + theta)
+        error = _wrap(phi - self.bias_phi - np.arctan2(my - y, mx - x) + theta)
         return error_density(error, self.sigma_phi, self.nu)
 
 

@@ -103,8 +103,9 @@ def _arc(pose: Array, distance: Array, turn: Array) -> Array:
     """`drive_arc` without the checks, for numbers that have been checked already."""
     x, y, theta = pose
     half = 0.5 * turn
-    nonzero = np.where(half == 0, 1e-20, half)  # sin(h) / h is 1 in the limit, and here as well
-    chord = distance * (np.sin(nonzero) / nonzero)
+    if not np.all(half):
+        half = np.where(half == 0, 1e-20, half)  # sin(h) / h is 1 in the limit, and here as well
+    chord = distance * (np.sin(half) / half)
     direction = theta + half
     end = np.empty((3, *np.broadcast(x, chord).shape))
     end[0] = x + chord * np.cos(direction)
@@ -150,7 +151,10 @@ class VelocityMotion:
 
     def variances(self, u: ArrayLike) -> Array:
         """Variances (3, ...) of v, omega and gamma for a control u (3, ...)."""
-        v, omega, _ = require_components("u", u, 3)
+        return self._variances(require_components("u", u, 3))
+
+    def _variances(self, u: Array) -> Array:
+        v, omega, _ = u
         a1, a2, a3, a4, a5, a6 = self.alpha
         v2, omega2 = v * v, omega * omega
         return np.array((a1 * v2 + a2 * omega2, a3 * v2 + a4 * omega2, a5 * v2 + a6 * omega2))
@@ -164,7 +168,7 @@ class VelocityMotion:
         """Each particle drives with errors of its own: (3, ...), (3,) -> (3, ...)."""
         pose, u = require_components("pose", pose, 3), require_components("u", u, 3)
         v, omega, dt = u
-        var_v, var_omega, var_gamma = self.variances(u)
+        var_v, var_omega, var_gamma = self._variances(u)
         shape = np.broadcast_shapes(pose.shape[1:], u.shape[1:])
         v_hat = v + draw_noise(var_v, shape, rng)
         omega_hat = omega + draw_noise(var_omega, shape, rng)

@@ -116,7 +116,8 @@ class Particles:
     @property
     def ess(self) -> NDArray[np.float64] | np.float64:
         """Effective sample size, a number (or (B,) for a batch) between 1 and M."""
-        return ess(self.log_w)
+        w = self.w
+        return 1.0 / np.einsum("...m,...m->...", w, w)
 
     def __repr__(self) -> str:
         shape = " x ".join(str(n) for n in self.log_w.shape)

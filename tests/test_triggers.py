@@ -15,7 +15,7 @@ BATCH = belief([1.0, 1.0, 1.0, 1.0], [1.0, 0.0, 0.0, 0.0], [3.0, 1.0, 1.0, 1.0])
 
 
 def test_ess_below_asks_each_filter_of_a_batch():
-    np.testing.assert_array_equal(BATCH.ess, [4, 1, 36 / 12])
+    np.testing.assert_allclose(BATCH.ess, [4, 1, 36 / 12])
     np.testing.assert_array_equal(pf.ess_below(0.5)(BATCH, 0), [False, True, False])
     np.testing.assert_array_equal(pf.ess_below(0.8)(BATCH, 0), [False, True, True])
     assert not np.any(pf.ess_below(0.0)(BATCH, 0))

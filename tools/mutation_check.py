@@ -82,14 +82,14 @@ MUTATIONS = [
     Mutation(
         "bearing-heading",
         "landmark_sensors",
-        "bearing_error = wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)",
-        "bearing_error = wrap(phi - self.bias_phi - np.arctan2(dy, dx) - theta)",
+        "bearing_error = _wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)",
+        "bearing_error = _wrap(phi - self.bias_phi - np.arctan2(dy, dx) - theta)",
         "test_landmark_sensors test_filters",
     ),
     Mutation(
         "bearing-wrap",
         "landmark_sensors",
-        "bearing_error = wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)",
+        "bearing_error = _wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)",
         "bearing_error = phi - self.bias_phi - np.arctan2(dy, dx) + theta",
         "test_landmark_sensors test_filters",
     ),
