@@ -2,7 +2,7 @@
 
 | thing | colour | shape |
 |---|---|---|
-| truth | black | solid line, robot as a filled triangle |
+| truth | black | solid line, robot as a filled arrowhead |
 | estimate | blue | dashed line, robot as an open circle with a nose |
 | dead reckoning | red-orange | dotted line, cross |
 | particles | grey | small dots; size shows weight |
@@ -151,8 +151,9 @@ def draw_pose(ax: Axes, pose: ArrayLike, kind: str = "truth", size: float = 80) 
     x, y, theta = np.asarray(pose, dtype=float)
     look = KINDS[kind]
     if kind == "truth":
-        marker: Any = (3, 0, np.degrees(theta) - 90)
-        return ax.scatter(x, y, s=size, marker=marker, color=look["color"], zorder=6)
+        turn = np.array(((np.cos(theta), np.sin(theta)), (-np.sin(theta), np.cos(theta))))
+        arrow = np.array(((1.0, 0.0), (-0.7, 0.55), (-0.7, -0.55))) @ turn
+        return ax.scatter(x, y, s=size, marker=arrow, color=look["color"], zorder=6)
     nose = 0.9 * np.sqrt(size)
     ax.annotate(
         "",
@@ -162,10 +163,9 @@ def draw_pose(ax: Axes, pose: ArrayLike, kind: str = "truth", size: float = 80) 
         arrowprops={"arrowstyle": "-", "color": look["color"], "lw": 2},
         zorder=6,
     )
-    face = "white" if look["marker"] == "o" else look["color"]
-    return ax.scatter(
-        x, y, s=size, marker=look["marker"], facecolor=face, edgecolor=look["color"], zorder=7
-    )
+    if look["marker"] == "x":
+        return ax.scatter(x, y, s=size, marker="x", color=look["color"], zorder=7)
+    return ax.scatter(x, y, s=size, facecolor="white", edgecolor=look["color"], zorder=7)
 
 
 def draw_path(ax: Axes, path: ArrayLike, kind: str = "truth", **kwargs: Any) -> Any:
