@@ -14,6 +14,7 @@ p1b = 0.75, 0.75**4, 0.75**10
 # %% p2a
 p2a = 0.5 / 0.2, 0.3 / 0.3, 0.2 / 0.5
 
+
 # %% p2b
 def estimate(values, target, proposal):
     """Mean under the target; three arrays of one length."""
@@ -22,8 +23,10 @@ def estimate(values, target, proposal):
     return np.sum(w * values) / np.sum(w)
     # END SOLUTION
 
+
 # %% p2c
 p2c = "b"
+
 
 # %% p3a
 def deprived(M, rng, runs):
@@ -35,6 +38,7 @@ def deprived(M, rng, runs):
     tx, ty = lab.film.truth[:2, 9]
     return (np.hypot(x - tx, y - ty) > 30).all(axis=-1)
     # END SOLUTION
+
 
 # %% p3b
 p3b = "d"
@@ -48,6 +52,7 @@ p3c = (
 # %% p4a
 p4a = ("c", 80)
 
+
 # %% p4b
 def ess_history(resample, rng, runs):
     """ESS before each decision to resample: shape (50, runs)."""
@@ -58,12 +63,14 @@ def ess_history(resample, rng, runs):
     return run.ess
     # END SOLUTION
 
+
 # %% p5a
 def bad_for_the_mean(rng):
     """A one-dimensional array of samples."""
     # BEGIN SOLUTION
     return np.concatenate([rng.normal(-10, 1, 300), rng.normal(10, 1, 300)])
     # END SOLUTION
+
 
 # %% p5b
 def circular_mean(theta, w):
@@ -72,8 +79,10 @@ def circular_mean(theta, w):
     return np.arctan2(np.sum(w * np.sin(theta)), np.sum(w * np.cos(theta)))
     # END SOLUTION
 
+
 # %% p5c
 p5c = "a"
+
 
 # %% p6a
 def kde(x, samples, h):
@@ -82,6 +91,7 @@ def kde(x, samples, h):
     d = (x[:, None] - samples[None, :]) / h
     return np.mean(np.exp(-0.5 * d**2) / (np.sqrt(2 * np.pi) * h), axis=1)
     # END SOLUTION
+
 
 # %% p6b
 def fit_scores(train, test):
@@ -96,12 +106,14 @@ def fit_scores(train, test):
     return gaussian.mean(), np.log(height[cell]).mean(), np.log(kde(test, train, 0.6)).mean()
     # END SOLUTION
 
+
 # %% p7a
 def copies(scheme, w, rng, runs):
     """How many copies each particle got: whole numbers, shape (runs, M)."""
     # BEGIN SOLUTION
     return np.array([np.bincount(scheme(w, rng), minlength=len(w)) for _ in range(runs)])
     # END SOLUTION
+
 
 # %% p7b
 def final_error(threshold, rng, runs):
@@ -114,12 +126,14 @@ def final_error(threshold, rng, runs):
     return pf.mean_pose(bel)[0] - truth[0]
     # END SOLUTION
 
+
 # %% p7c
 p7c = "c"
 
 # %% p8a
 a = 2 / (9 * 99)
 p8a = 99 / (2 * 0.05) * (1 - a + np.sqrt(a) * 2.326) ** 3
+
 
 # %% p8b
 def success(side, M, rng, runs):
@@ -129,11 +143,13 @@ def success(side, M, rng, runs):
     return (np.hypot(x, y) < 30).any(axis=-1)
     # END SOLUTION
 
+
 # %% p8c
 p8c = "b"
 
 # %% q1a
 q1a = "b"
+
 
 # %% q1b
 def follow(D, rng, runs):
@@ -145,11 +161,13 @@ def follow(D, rng, runs):
     return lab.track(lab.line[:300], bel, motion, pf.Position(20.0), rng).error
     # END SOLUTION
 
+
 # %% q2a
 q2a = 2.0 / (2 * np.pi / 688)
 
 # %% q2b
 q2b = "c"
+
 
 # %% q2c
 def circle_mean(state, dt):
@@ -160,11 +178,13 @@ def circle_mean(state, dt):
     return np.stack([x, y, pf.wrap(theta + omega * dt), v, omega])
     # END SOLUTION
 
+
 # %% q3a
 q3a = "a"
 
 # %% q3b
 q3b = "d"
+
 
 # %% q3c
 def log_likelihood(z, state, sigma):
@@ -174,8 +194,10 @@ def log_likelihood(z, state, sigma):
     return -(dx**2 + dy**2) / (2 * sigma**2) - np.log(2 * np.pi * sigma**2)
     # END SOLUTION
 
+
 # %% q4a
 q4a = 5, 5, 1, 2
+
 
 # %% q4b
 def systematic(w, rng):
@@ -185,6 +207,7 @@ def systematic(w, rng):
     teeth = (np.arange(M) + rng.random()) / M
     return np.minimum(np.searchsorted(np.cumsum(w), teeth), M - 1)
     # END SOLUTION
+
 
 # %% q4c
 def residual(w, rng):
@@ -197,6 +220,7 @@ def residual(w, rng):
     return np.concatenate([np.repeat(np.arange(M), copies), drawn])
     # END SOLUTION
 
+
 # %% q4d
 def select(state, w, ancestors):
     """New state (2, n) and new weights (n,) after resampling."""
@@ -204,8 +228,10 @@ def select(state, w, ancestors):
     return state[:, ancestors], np.full(len(ancestors), 1 / len(ancestors))
     # END SOLUTION
 
+
 # %% q5a
 q5a = 1 - (1 - 0.012) ** 100, 1 - (1 - 0.005) ** 100, 1, 0.5
+
 
 # %% q5b
 def survival(w, M):
@@ -213,6 +239,7 @@ def survival(w, M):
     # BEGIN SOLUTION
     return 1 - (1 - w) ** M, min(1, M * w)
     # END SOLUTION
+
 
 # %% q5c
 def survived(scheme, w, rng, runs):
@@ -223,8 +250,10 @@ def survived(scheme, w, rng, runs):
     return np.array([0 in scheme(weights, rng) for _ in range(runs)])
     # END SOLUTION
 
+
 # %% q6a
 q6a = "c"
+
 
 # %% q6b
 def diffuse(state, sigma, rng):
@@ -233,8 +262,10 @@ def diffuse(state, sigma, rng):
     return state + sigma * rng.standard_normal(state.shape)
     # END SOLUTION
 
+
 # %% q7a
 q7a = ("b", 70)
+
 
 # %% q7b
 def collapse(sigma, rng, runs):
@@ -246,11 +277,13 @@ def collapse(sigma, rng, runs):
     return np.array([distinct, run.ess[-1]])
     # END SOLUTION
 
+
 # %% q7c
 q7c = "a"
 
 # %% q8a
 q8a = ("b", 60)
+
 
 # %% q8b
 def three_filters(rng, runs):
@@ -259,9 +292,7 @@ def three_filters(rng, runs):
     rows = []
     for options in ({"scheme": None, "weighted": False}, {"scheme": None}, {}):
         bel = lab.anywhere((runs, 300), rng)
-        run = lab.track(
-            lab.film[:200], bel, pf.FixedTarget(1.4), pf.Position(3.0), rng, **options
-        )
+        run = lab.track(lab.film[:200], bel, pf.FixedTarget(1.4), pf.Position(3.0), rng, **options)
         rows.append(run.error[100:].mean(axis=0))
     return np.array(rows)
     # END SOLUTION

@@ -8,6 +8,7 @@ The markers BEGIN SOLUTION and END SOLUTION are those of otter-grader.
 # %% q9a
 q9a = ("c", 60)
 
+
 # %% q9b
 def sensor_sweep(variance, rng, runs):
     """Mean error in px of frames 50 to 200, one per run."""
@@ -15,11 +16,13 @@ def sensor_sweep(variance, rng, runs):
     return settled_error(np.sqrt(variance), rng, runs)
     # END SOLUTION
 
+
 # %% q9c
 q9c = "b"
 
 # %% q10a
 q10a = ("c", 50)
+
 
 # %% q10b
 def motion_sweep(variance, rng, runs):
@@ -31,8 +34,10 @@ def motion_sweep(variance, rng, runs):
     return np.array([error.mean(axis=0), error[-100:].mean(axis=0)])
     # END SOLUTION
 
+
 # %% q11a
 q11a = ("a", 80)
+
 
 # %% q11b
 def ratio_sweep(model, ratio, rng, runs):
@@ -43,6 +48,7 @@ def ratio_sweep(model, ratio, rng, runs):
     run = lab.track(lab.circle[:150], bel, motion, pf.Position(20.0), rng)
     return run.error[50:].mean(axis=0)
     # END SOLUTION
+
 
 # %% q12a
 def error_with(model, M, rng, runs):
@@ -55,8 +61,10 @@ def error_with(model, M, rng, runs):
     return run.error[50:].mean(axis=0)
     # END SOLUTION
 
+
 # %% q12b
 q12b = "c"
+
 
 # %% q13a
 def gate(likelihood, threshold):
@@ -65,12 +73,14 @@ def gate(likelihood, threshold):
     return np.mean(likelihood) < threshold
     # END SOLUTION
 
+
 # %% q13b
 def mixture(likelihood, epsilon, area):
     """Density of the measurement: array like likelihood, per px²."""
     # BEGIN SOLUTION
     return (1 - epsilon) * likelihood + epsilon / area
     # END SOLUTION
+
 
 # %% q13c
 def scores(rng, runs):
@@ -80,6 +90,7 @@ def scores(rng, runs):
     bel = lab.around(lab.half_false.start[:2], (runs, 200), rng, sigma=5.0)
     return lab.track(lab.half_false[:200], bel, pf.FixedTarget(1.4), sensor, rng).likelihood
     # END SOLUTION
+
 
 # %% q14a
 def precision(model, rng, runs):
@@ -92,11 +103,13 @@ def precision(model, rng, runs):
     return lab.track(films[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
     # END SOLUTION
 
+
 # %% q14b
 q14b = "a"
 
 # %% q15a
 q15a = ("a", 70)
+
 
 # %% q15b
 def rejected(variance, rng, runs):
@@ -108,8 +121,10 @@ def rejected(variance, rng, runs):
     return run.rejected.mean(axis=0)
     # END SOLUTION
 
+
 # %% q15c
 q15c = 1 / (2 * np.pi * 1e-4)
+
 
 # %% q16a
 def four_filters(rng, runs):
@@ -127,6 +142,7 @@ def four_filters(rng, runs):
     ]
     return np.array([np.median(t.error, axis=0) for t in tracks])
     # END SOLUTION
+
 
 # %% q16b
 q16b = "d"
