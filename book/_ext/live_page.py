@@ -130,7 +130,7 @@ def visit_other(writer: Any, node: explorable) -> None:
 
 
 def is_check(source: str, lab: str, item: str) -> bool:
-    """Whether a cell calls ``lab.check("item", ...)``."""
+    """Whether a cell calls ``lab.check("item", ...)``, or predict or answer."""
     try:
         calls = [n for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Call)]
     except SyntaxError:
@@ -138,7 +138,8 @@ def is_check(source: str, lab: str, item: str) -> bool:
     return any(
         isinstance(c.func, ast.Attribute)
         and isinstance(c.func.value, ast.Name)
-        and (c.func.value.id, c.func.attr) == (lab, "check")
+        and c.func.value.id == lab
+        and c.func.attr in ("check", "predict", "answer")
         and bool(c.args)
         and isinstance(c.args[0], ast.Constant)
         and c.args[0].value == item

@@ -48,7 +48,7 @@ class Drive(Scene):
         "ESS": "",
         "resampled": "times",
         "hypotheses": "alive",
-        "heaviest": "% of mass",
+        "heaviest": "%",
         "false readings": "",
         "rejected": "",
         "likely area": "m²",

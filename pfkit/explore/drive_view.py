@@ -97,9 +97,9 @@ def draw_charts(s: Drive, pen: Pen, landmarks: bool = True) -> None:
     left, width = 0.765, 0.225
     pen.view((left, 0.74, width, 0.24), (0, 1), (0, 4), frame=False)
     pen.robots("truth", 0.06, 3.5, 0.0, radius=0.001)
-    pen.text("ink", 0.14, 3.5, "robot (hidden truth)", size=11)
+    pen.text("ink", 0.14, 3.5, "robot", size=11)
     pen.symbols("estimate", "plus", 0.06, 2.6, size=12)
-    pen.text("ink", 0.14, 2.6, "mean, 2-sigma ellipse", size=11)
+    pen.text("ink", 0.14, 2.6, "mean, 2σ", size=11)
     pen.points("particle", np.array([0.03, 0.06, 0.09]), np.array([1.6, 1.85, 1.6]), size=4)
     pen.text("ink", 0.14, 1.7, f"{s.bel.M} particles", size=11)
     if landmarks:

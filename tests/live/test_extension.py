@@ -27,6 +27,8 @@ def test_a_check_is_found_by_its_call(live_page):
     assert live_page.is_check('lab.check("q2", f)', "lab", "q2")
     assert not live_page.is_check('lab.check("q3", f)', "lab", "q2")
     assert not live_page.is_check('other.check("q2", f)', "lab", "q2")
+    assert live_page.is_check('lab.predict("q2", p)', "lab", "q2")
+    assert not live_page.is_check('lab.use("q2", f)', "lab", "q2")
     assert not live_page.is_check("lab.check(", "lab", "q2")
 
 

@@ -2,11 +2,16 @@
 
 from __future__ import annotations
 
+import csv
 import json
+import subprocess
+import sys
+from pathlib import Path
 
 import pytest
 
 pytestmark = pytest.mark.page
+ROOT = Path(__file__).resolve().parents[2]
 AVERAGE = "def circular_mean(theta, w):\n    return np.sum(theta * w) / np.sum(w)\n"
 CIRCULAR = (
     "def circular_mean(theta, w):\n"
@@ -173,6 +178,28 @@ def test_export_has_the_schema_of_the_notebook(lab):
     from pfkit.labs.lab3 import LAB
 
     assert parsed["answers"]["p5b"]["version"] == LAB.items["p5b"].version
+
+
+def test_an_export_is_graded_like_the_notebook(lab, tmp_path):
+    """The page's file and a notebook with the same answers earn the same points."""
+    data = lab.tab.evaluate("PF.lab.exportAnswers()")
+    (course,) = (ROOT / "notebooks" / "labs").glob("lab3_*.ipynb")
+    notebook = json.loads(course.read_text(encoding="utf-8"))
+    for cell in notebook["cells"]:
+        item = cell["metadata"].get("answer")
+        if item in data["answers"]:
+            cell["source"] = data["answers"][item]["source"]
+    folder = tmp_path / "handed_in"
+    folder.mkdir()
+    (folder / "page.json").write_text(json.dumps(data), encoding="utf-8")
+    (folder / "desk.ipynb").write_text(json.dumps(notebook), encoding="utf-8")
+    grades = tmp_path / "grades.csv"
+    command = [sys.executable, "-m", "pfkit.labs.grade", "lab3", str(folder), "-o", str(grades)]
+    subprocess.run([*command, "--jobs", "2"], check=True, capture_output=True)
+    with grades.open(encoding="utf-8", newline="") as file:
+        rows = {row["student"]: row for row in csv.DictReader(file)}
+    assert rows["page"]["score"] == rows["desk"]["score"]
+    assert float(rows["page"]["score"]) > 0 and rows["page"]["p5b"] == rows["desk"]["p5b"]
 
 
 @pytest.mark.parametrize(
