@@ -187,6 +187,7 @@ def open_page(chromium, address):
         )
         if init:
             context.add_init_script(init)
+        context.set_default_timeout(90_000)
         contexts.append(context)
         return Page(context, base, page)
 
