@@ -1,0 +1,63 @@
+# ruff: noqa
+# mypy: ignore-errors
+"""Solutions to chapter 7. One block per item; `# %% id` names the answer cell it belongs to."""
+
+# %% clock
+clock = ("c", 50)
+
+# %% best
+best = ("d", 50)
+
+# %% hand
+hand = (2, 2, 0, 1, 0)
+
+# %% variance
+variance = (5 * 0.25 * 0.75, 0.25 * 0.75)
+
+# %% survive
+survive = (1 - (1 - 0.012) ** 100, min(1, 100 * 0.012))
+
+
+# %% comb
+def comb(w, rng):
+    # BEGIN SOLUTION
+    edges = np.cumsum(w / np.sum(w))
+    edges[np.flatnonzero(w)[-1] :] = np.inf
+    return np.searchsorted(edges, (np.arange(w.size) + rng.random()) / w.size, side="right")
+    # END SOLUTION
+
+
+# %% leftover
+def leftover(w):
+    # BEGIN SOLUTION
+    rest = w.size * w - np.floor(w.size * w)
+    return rest / rest.sum()
+    # END SOLUTION
+
+
+# %% clock_x
+def clock_x(rng):
+    # BEGIN SOLUTION
+    k, age = 50, 0
+    while 0 < k < 100:
+        k, age = rng.binomial(100, k / 100), age + 1
+    return age
+    # END SOLUTION
+
+
+# %% best_x
+def best_x(rng):
+    # BEGIN SOLUTION
+    w = np.tile([1.5, 0.5], 500) / 1000
+    return np.sum(pf.systematic(w, rng) % 2 == 0)
+    # END SOLUTION
+
+
+# %% when
+when = "b"
+
+# %% why
+why = (
+    "The number of copies is random, so the share of a hypothesis drifts even at equal weights, "
+    "and zero is for ever. Combs or strata slow this down, and so does resampling rarely."
+)
