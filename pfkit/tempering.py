@@ -43,7 +43,7 @@ from pfkit.resampling import Resampler, systematic
 from pfkit.sensors import SensorModel
 
 Array = NDArray[np.float64]
-HALVINGS = 20  # of the interval in which the next exponent is sought
+CLOSE = 0.1  # the next exponent is sought to a tenth of itself
 SMALLEST = 1e-4  # the least step of the exponent: at most ten thousand stages, in fact ten
 
 
@@ -106,15 +106,13 @@ def tempered_update(
 
 
 def _largest_step(log_w: Array, log_p: Array, wanted: float, left: Array) -> Array:
-    """Largest exponent <= left, per filter, after which ESS >= wanted (or the least step)."""
+    """The largest exponent <= left that keeps ESS >= wanted, per filter, to a tenth of itself."""
     log_p = log_p - log_p.max(axis=-1, keepdims=True)
-    low, high = np.zeros_like(left), left
-    for halving in range(HALVINGS):
-        middle = high if halving == 0 else (low + high) / 2
+    low, high, middle = np.zeros_like(left), left, left
+    while (high - low > np.maximum(CLOSE * high, SMALLEST)).any():
         enough = ess(normalise(log_w + middle[..., None] * log_p)[0]) >= wanted
         low, high = np.where(enough, middle, low), np.where(enough, high, middle)
-        if (low == high).all():
-            break
+        middle = (low + high) / 2
     return np.minimum(np.maximum(low, SMALLEST), left)
 
 
