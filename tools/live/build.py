@@ -39,7 +39,7 @@ PARTS = CACHE / "parts"
 OURS = (ROOT / "pfkit" / "explore" / "web", ROOT / "book" / "live")
 RUNTIME = ("pyodide.js", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip")
 # The edge of pfkit needs matplotlib, ipywidgets or nbformat, which the page does not have.
-NOT_IN_PAGE = ("plotting.py", "widgets.py", "labs/grade.py", "labs/release.py")
+NOT_IN_PAGE = ("plotting.py", "widgets.py", "labs/grade/", "labs/release.py")
 # What only NumPy's own developers need. (Its import does need _multiarray_tests*.so.)
 NOT_NEEDED = re.compile(r"/(tests|include|f2py|distutils|_examples|_pyinstaller)/|\.(pyi|a)$")
 HOOK = '''\
@@ -156,7 +156,8 @@ def pfkit_files() -> dict[str, bytes]:
     return {
         "pfkit/" + p.relative_to(package).as_posix(): p.read_bytes()
         for p in names
-        if p.relative_to(package).as_posix() not in NOT_IN_PAGE and "__pycache__" not in p.parts
+        if not p.relative_to(package).as_posix().startswith(NOT_IN_PAGE)
+        and "__pycache__" not in p.parts
     }
 
 

@@ -1,0 +1,182 @@
+"""The grader's parts, without running anything: what is read, suspected, run and reported."""
+
+import json
+
+import numpy as np
+import pytest
+import submissions
+
+from pfkit.labs import lab3
+from pfkit.labs.grade import cells, report, suspicion
+from pfkit.labs.grade.bar import Bar
+from pfkit.labs.grade.notebook import NoSuchLab, find, steps
+from pfkit.labs.grade.seal import Unchanged
+from pfkit.labs.grade.submission import Answers, read
+
+LAB = lab3.LAB
+
+
+@pytest.fixture(scope="module")
+def pristine():
+    return find("lab3")
+
+
+# -- which cells run -----------------------------------------------------------------------------
+
+
+def test_names_read_and_bound():
+    source = "import numpy as np\nx = [f(y) for y in z]\nx.append(1)\ndef g(a):\n    return a + b"
+    assert {"f", "z", "b", "x"} <= cells.names_read(source)
+    assert not {"a", "y"} & cells.names_read(source)
+    assert {"np", "x", "g"} <= cells.names_bound(source)
+    assert cells.names_bound("a.b[0].c = 1") == cells.names_bound("a.sort()") == {"a"}
+    assert cells.names_read("def (") == cells.names_bound("def (") == set()
+
+
+def test_every_answer_runs_and_is_checked_and_figures_are_left_out(pristine):
+    run = steps(pristine, Answers(sources=submissions.solutions()))
+    done = [s["item"] for s in run if s["do"] == "answer"]
+    assert done == [s["item"] for s in run if s["do"] == "check"] == list(LAB.items)
+    ours = [s["source"] for s in run if s["do"] == "ours"]
+    assert any("import numpy" in s for s in ours)
+    assert not any("plt.show" in s for s in ours)
+
+
+def test_a_cell_runs_if_an_answer_reads_what_it_binds(pristine):
+    def texts(answer):
+        run = steps(pristine, Answers(sources=pristine.stubs | {"p2b": answer}))
+        return "\n".join(s["source"] for s in run if s["do"] in ("ours", "use"))
+
+    assert "rng = np.random" not in texts("def estimate(v, t, p):\n    return 1")
+    assert "rng = np.random" in texts("def estimate(v, t, p):\n    return rng.normal()")
+
+
+def test_unknown_labs_are_named():
+    with pytest.raises(NoSuchLab, match="lab4"):
+        find("os.path")
+
+
+# -- what is read --------------------------------------------------------------------------------
+
+
+def test_exports_become_cells(pristine, tmp_path):
+    version = LAB.items["p1a"].version
+    data = submissions.export({"p1a": "'c'", "p2b": submissions.RIGHT["p2b"], "zz": "1"})
+    data["answers"]["p1a"]["version"] = version
+    data["predictions"] = {"p4a": {"choice": "c", "sure": 70, "version": ""}}
+    path = tmp_path / "a.json"
+    path.write_text(json.dumps(data))
+    answers = read(path, LAB, pristine.stubs, pristine.variables)
+    assert answers.sources["p1a"].endswith("p1a = 'c'")
+    assert answers.sources["p2b"] == submissions.RIGHT["p2b"]
+    assert answers.sources["p4a"] == "p4a = ('c', 70.0)"
+    assert answers.sources["p1b"] == pristine.stubs["p1b"] and answers.missing == []
+    assert answers.notes == [
+        "p2b: answers another version of the question",
+        "unknown item 'zz' ignored",
+    ]
+
+
+def test_a_split_cell_is_joined(pristine, tmp_path):
+    head, body = "w0 = 3", submissions.RIGHT["p1a"]
+    path = tmp_path / "a.ipynb"
+    submissions.write(path, submissions.answered(submissions.twice(body), p1a=head))
+    answers = read(path, LAB, pristine.stubs, pristine.variables)
+    assert answers.sources["p1a"] == f"{head}\n\n{body}" and answers.doubts == []
+
+
+# -- what is suspected ---------------------------------------------------------------------------
+
+SUSPECT = [
+    "lab.LAB.items", "lab.use('p2b', 1)", "lab.resamplers", "lab.check = print", "np.abs = max",
+    "from pfkit.labs import lab4", "import pfkit.labs.lab3.weights", "import gc",
+    "from inspect import stack", "setattr(np, 'abs', max)", "eval('1')", "f.__globals__",
+    "getattr(f, '__code__')", "import sys\nsys.modules['pfkit']", "pf.labs.lab3", "np = 3",
+    "import mylab as lab", "x = 'pfkit.labs.lab'", "del lab.check", "lab._private",
+]  # fmt: skip
+INNOCENT = [
+    "p1a = 'c'", "import numpy as np", "from math import sqrt as root", "plt.rcParams['x'] = 1",
+    "from pfkit.labs import lab3 as lab", "import sys\nsys.exit()", "x = lab.film.truth",
+    "lab.check('p1a', 'c')", "plt.gca().set_title('__')", "def f(x):\n    x.weight = 2",
+    "if __name__ == '__main__': pass", "run = lab.track(lab.film, bel, m, s, rng)", "def (",
+]  # fmt: skip
+
+
+@pytest.mark.parametrize("source", SUSPECT)
+def test_reaching_for_the_checker_is_seen(source):
+    assert suspicion.doubts("q", source, LAB, lab3)
+
+
+@pytest.mark.parametrize("source", [*INNOCENT, *submissions.solutions().values()])
+def test_ordinary_answers_are_not_suspected(source):
+    assert suspicion.doubts("q", source, LAB, lab3) == []
+
+
+def test_changes_of_the_checker_are_seen(monkeypatch):
+    picture = Unchanged(LAB)
+    assert picture.changes() == []
+    with monkeypatch.context() as patch:
+        patch.setattr(np, "allclose", max)
+        patch.setattr(type(LAB), "check", max)
+        patch.setitem(LAB.items, "p1a", LAB.items["p1b"])
+        patch.setitem(vars(LAB.items["p1b"]), "tol", 1e9)
+        patch.setattr(lab3.track, "__code__", (lambda: 0).__code__)
+        found = " ".join(picture.changes())
+    for part in ("numpy.allclose", "Lab.check", "the items.p1a", "item p1b.tol", "code of"):
+        assert part in found
+    assert picture.changes() == []
+
+
+# -- what is reported ----------------------------------------------------------------------------
+
+
+def record(name, **items):
+    got = {
+        i: {"status": "passed" if s else "wrong", "score": s, "choice": c, "misconception": m}
+        for i, (s, c, m) in items.items()
+    }
+    score = sum(g["score"] for g in got.values())
+    return {
+        "student": name, "file": f"{name}.ipynb", "status": "ok", "score": score, "max": 64.0,
+        "items": got, "texts": {}, "detail": "", "seconds": 1.0, "version": "v", "sha256": "ab",
+    }  # fmt: skip
+
+
+def test_statistics_of_items_by_hand():
+    """Facility and discrimination recomputed with NumPy from the same four students."""
+    p1b, p2b = np.array([1.0, 1, 0, 0]), np.array([2.0, 1.5, 1, 0])
+    records = [
+        record(str(k), p1b=(a, "", "" if a else "all-rooms"), p2b=(b, "", ""), p1a=(1.0, "c", ""))
+        for k, (a, b) in enumerate(zip(p1b, p2b, strict=True))
+    ]
+    ungraded = record("x", p1b=(1.0, "", "")) | {"score": None, "status": "crashed"}
+    rows = dict(
+        line.split(",", 1) for line in report.statistics([*records, ungraded], LAB).splitlines()
+    )
+    r = round(float(np.corrcoef(p1b, 1 + p2b)[0, 1]), 3)
+    assert f",4,0,2,0.5,{r},,all-rooms 2" in rows["p1b"]
+    assert rows["p1a"].endswith(",4,0,4,1,,c 4,")
+    assert ",0,4,0,,,," in rows["q1a"], "nobody reached it: no facility, not 0"
+
+
+def test_a_spreadsheet_computes_nothing():
+    row = report.rows([record("=1+1") | {"detail": "@x\n\x1b[0m"}], LAB).splitlines()
+    assert len(row) == 2 and row[1].startswith("'=1+1,'=1+1.ipynb") and ",'@x" in row[1]
+
+
+def test_a_page_shows_markup_as_text():
+    got = record("<b>ann|", p1b=(0.0, "", "all-rooms"))
+    got["texts"] = {"p3c": "p3c = '''\n```\n# not a heading\n'''"}
+    text = report.page(got, LAB)
+    assert r"\<b\>ann\|" in text and "````python" in text
+    assert text.count("* [ ] ") == len(LAB.items["p3c"].rubric) and "Model: " in text
+    names = report.page_names([record("A b"), record("a_b"), record("../x"), record("é" * 300)])
+    assert len({n.lower() for n in names.values()}) == 4
+    assert all("/" not in n and len(n.encode()) < 200 for n in names.values())
+
+
+def test_the_bar_ends_at_all(capsys):
+    bar = Bar(3)
+    for k in range(3):
+        bar.step(f"student {k}")
+    assert "3/3, 0 s left: student 2" in capsys.readouterr().err
