@@ -201,7 +201,7 @@ class Drive(Scene):
         dx, dy, turn = self.estimate - self.truth
         self.error, self.turn_error = float(np.hypot(dx, dy)), abs(float(pf.wrap(turn)))
         self.spread = float(np.sqrt(self.Sigma[0, 0] + self.Sigma[1, 1]))
-        if self.ticks % 4 == 0:
+        if self.look_every == 1 or self.ticks % 4 == 0:
             self.history = [*self.history[-159:], (self.ess / self.bel.M, self.error)]
 
     def copies(self) -> np.ndarray:
