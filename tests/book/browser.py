@@ -27,6 +27,7 @@ FLAGS = (
 ).split()
 WIDE, NARROW = {"width": 1280, "height": 900}, {"width": 390, "height": 844}
 SETTLE = 400  # ms: the theme waits before it reacts to a new width
+PATIENCE = 120_000  # ms: a busy machine is slow, not wrong
 LARGEST_PAGE = 400_000  # bytes beyond what all pages share
 SHARED = ("/_static/", "/live/", "/searchindex.js")  # what all pages, or all that compute, load
 FORWARDS = 'http-equiv="refresh"'

@@ -34,6 +34,7 @@ def chromium():
 def tab(chromium):
     """Give a fresh tab, with nothing stored from another test."""
     context = chromium.new_context()
+    context.set_default_timeout(browser.PATIENCE)
     yield context.new_page()
     context.close()
 
