@@ -124,9 +124,11 @@ def _halve(p: Array, box: tuple[slice, ...]) -> tuple[tuple[slice, ...], ...] | 
     marginals = [part.sum(axis=tuple(a for a in range(p.ndim) if a != axis)) for axis in range(3)]
     axis = int(np.argmax([_spread(m) / n for m, n in zip(marginals, p.shape, strict=True)]))
     below = np.cumsum(marginals[axis])
-    if np.count_nonzero(marginals[axis]) < 2:
+    held = np.flatnonzero(marginals[axis])
+    if held.size < 2:
         return None
-    cut = box[axis].start + 1 + int(np.argmin(np.abs(below[:-1] / below[-1] - 0.5)))
+    inner = below[held[0] : held[-1]]  # cuts that leave some mass on both sides, however little
+    cut = box[axis].start + 1 + int(held[0] + np.argmin(np.abs(inner / below[-1] - 0.5)))
     first, second = list(box), list(box)
     first[axis], second[axis] = slice(box[axis].start, cut), slice(cut, box[axis].stop)
     return tuple(first), tuple(second)
