@@ -103,9 +103,8 @@ def _arc(pose: Array, distance: Array, turn: Array) -> Array:
     """`drive_arc` without the checks, for numbers that have been checked already."""
     x, y, theta = pose
     half = 0.5 * turn
-    if not np.all(half):
-        half = np.where(half == 0, 1e-20, half)  # sin(h) / h is 1 in the limit, and here as well
-    chord = distance * (np.sin(half) / half)
+    safe = half if np.all(half) else np.where(half == 0, 1e-20, half)  # sin(h) / h -> 1
+    chord = distance * (np.sin(safe) / safe)
     direction = theta + half
     end = np.empty((3, *np.broadcast(x, chord).shape))
     end[0] = x + chord * np.cos(direction)

@@ -93,3 +93,8 @@ def test_the_circular_mean_crosses_the_cut_and_takes_axes():
     across = pf.circular_mean(theta.T, axis=0)
     np.testing.assert_allclose(np.abs(np.degrees(across)), [180.0, 20.0])
     np.testing.assert_allclose(np.degrees(pf.circular_mean(theta[1], [3.0, 0.0])), 10.0)
+
+
+def test_weights_must_belong_to_the_angles():
+    with pytest.raises(pf.ShapeError, match=r"shape of theta, \(3,\), got \(2,\)"):
+        pf.circular_mean(np.zeros(3), np.ones(2))
