@@ -86,10 +86,13 @@ def kidnapped(seed, world, batch=20, M=400):
 
 @pytest.mark.parametrize("world, least", [(WORLD, 0.4), (None, 0.7)])
 def test_a_kidnapped_filter_comes_home_and_a_plain_one_does_not(world, least):
-    augmented, plain, quiet = kidnapped(1, world)
-    assert augmented.mean() >= least
-    assert plain.mean() == 0
-    assert quiet < 0.05  # at home, hardly any particle is replaced
+    """Five drives of 20 filters; over ten other seeds the shares were .61 and .92 (sd of one drive
+    .09 and .12), so the mean of five falls below the limit in less than 1 of 10,000."""
+    drives = [kidnapped(seed, world) for seed in range(2, 7)]
+    assert np.mean([augmented for augmented, _, _ in drives]) >= least
+    for _, plain, quiet in drives:
+        assert plain.mean() == 0
+        assert quiet < 0.05  # at home, hardly any particle is replaced
 
 
 def test_ancestor_minus_one_marks_the_newborn():
