@@ -38,7 +38,7 @@ best = Prediction(
     options={
         "a": "yes, always",
         "b": "yes, if there are enough particles",
-        "c": "no, it can scatter a few per cent more",
+        "c": "no, but at worst it scatters a few per cent more",
         "d": "no, its variance can be hundreds of times larger",
     },
     key="d",
@@ -171,7 +171,10 @@ def _unbiased(f):
 
 
 def _floor_ceil(f):
-    return bool((np.abs(_draws(f, runs=100) - 5 * FIVE) < 1 + 1e-9).all())
+    uneven = np.array([0.1, 0.2, 0.3, 0.4])  # strata can give the second of these two copies
+    return all(
+        bool((np.abs(_draws(f, w, 100) - w.size * w) < 1 + 1e-9).all()) for w in (FIVE, uneven)
+    )
 
 
 def _zeros(f):
@@ -227,6 +230,17 @@ comb = Code(
             ),
         ),
         Misconception(
+            "stratified",
+            "is stratified: it draws a random number for each tooth",
+            (
+                "How many random numbers does a comb need?",
+                "All teeth of a comb share one offset.",
+                "Draw rng.random() without an argument.",
+            ),
+            lambda w, rng: pf.stratified(w, rng),
+            lambda f: _unbiased(f) and not _floor_ceil(f) and _draws(f, runs=60)[:, 0].std() == 0,
+        ),
+        Misconception(
             "multinomial",
             "is multinomial: it throws M independent points",
             (
@@ -256,7 +270,7 @@ comb = Code(
                 "Divide the edges by the last one.",
             ),
             lambda w, rng: np.searchsorted(np.cumsum(w), _teeth(w, rng)),
-            lambda f: _floor_ceil(f) and _zeros(f),
+            lambda f: _floor_ceil(f) and _zeros(f) and _unbiased(f),
         ),
     ),
 )
@@ -354,6 +368,7 @@ clock_x = Experiment(
             "whole numbers of at least 1", lambda x: bool((x >= 1).all() and (x % 1 == 0).all())
         ),
         Property("mean of the runs between 95 and 185", lambda x: bool(95 < x.mean() < 185)),
+        Property("the runs differ, as luck does", lambda x: bool(x.std() > 20)),
     ),
     margin="the mean of 150 has a standard error of about 8: 5 and 6 of them",
     hints=(
@@ -433,7 +448,7 @@ best_x = Experiment(
 
 when = Choice(
     id="when",
-    title="When should a filter never resample?",
+    title="When can resampling only lose particles?",
     options={
         "a": "when the effective sample size is below half of M",
         "b": "after a prediction without a measurement",
@@ -443,8 +458,8 @@ when = Choice(
     key="b",
     feedback={
         "a": "That is the usual moment to do it.",
-        "b": "Yes: the weights have not changed, so copying adds luck and nothing else.",
-        "c": "It measures, so weights change; be careful there, but not never.",
+        "b": "Yes: nothing was learnt since, so copying adds luck and nothing else.",
+        "c": "It measures, so weights change; be sparing, but they do degenerate.",
         "d": "Then prefer a comb and resample rarely, but weights still degenerate without it.",
     },
 )
