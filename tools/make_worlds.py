@@ -1,7 +1,7 @@
 """Make the simulated worlds that the labs share: a map and a drive each, as small text tables.
 
     python tools/make_worlds.py                    # writes data/worlds/
-    python tools/make_worlds.py /tmp/here square   # elsewhere, and only some
+    python tools/make_worlds.py elsewhere square   # into that folder, only some
 
 All are ours: the places follow the sources, the noise is drawn here from a fixed seed. Known
 ids are in the last row of z; leave it out and the landmarks have no names. `pf.read_log` reads
