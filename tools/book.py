@@ -28,7 +28,7 @@ INPUTS = ("book", "notebooks", "pfkit", "data", "tools", "CHANGELOG.md", "_confi
 def fingerprint() -> str:
     """Hash all files the build reads, and the lock file that fixes the builder."""
     digest = hashlib.sha256()
-    names = (*INPUTS, "requirements-book.lock", "pyproject.toml")
+    names = (*INPUTS, "requirements-book.lock", "pyproject.toml", ".cache/live/site.stamp")
     for top in (ROOT / name for name in names):
         files = sorted(top.rglob("*")) if top.is_dir() else [top]
         for path in files:
