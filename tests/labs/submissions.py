@@ -155,12 +155,16 @@ def cases(precious, tag):
         "raises.ipynb": (before("1 / 0"), "errors", "ZeroDivisionError"),
         "helper elsewhere.ipynb": (
             answered(helper_elsewhere, p1b="p1b = helper()"), "errors", "is not run"),
+        "helper of a function.ipynb": (
+            answered(helper_elsewhere, p2b="def estimate(v, t, p):\n    return helper()"),
+            "errors", "helper is made in a cell"),
         "input.ipynb": (before("input('name? ')"), "errors", "EOFError"),
         "sys exit.ipynb": (before("import sys\nsys.exit(0)"), "errors", "SystemExit"),
         "exit.ipynb": (before("exit()"), "errors", ""),
         "recursion.ipynb": (before("def f(): f()\nf()"), "errors", "RecursionError"),
         "interrupts itself.ipynb": (before("raise KeyboardInterrupt"), "errors", "Keyboard"),
         "null byte.ipynb": (answered(p1b="p1b = 1\0"), "errors", "null byte"),
+        "half a character.ipynb": (before("x = '\ud800'"), "errors", "Unicode"),
         "20 GB.ipynb": (before("a = np.ones(int(2.5e9))"), "errors", "Memory"),
         "gigabyte on disk.ipynb": (before(
             "with open('big', 'wb') as f:\n    for _ in range(1000): f.write(bytes(10**6))"),

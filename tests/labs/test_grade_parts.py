@@ -1,6 +1,7 @@
 """The grader's parts, without running anything: what is read, suspected, run and reported."""
 
 import json
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ import submissions
 from pfkit.labs import lab3
 from pfkit.labs.grade import cells, report, suspicion
 from pfkit.labs.grade.bar import Bar
+from pfkit.labs.grade.batch import Batch, Limits, student
 from pfkit.labs.grade.notebook import NoSuchLab, find, steps
 from pfkit.labs.grade.seal import Unchanged
 from pfkit.labs.grade.submission import Answers, read
@@ -164,6 +166,26 @@ def test_a_spreadsheet_computes_nothing():
     assert len(row) == 2 and row[1].startswith("'=1+1,'=1+1.ipynb") and ",'@x" in row[1]
 
 
+def test_names_that_are_no_text_can_be_written(tmp_path):
+    odd = record("caf\udce9") | {"detail": "\ud800"}
+    report.write(tmp_path / "a.csv", report.rows([odd], LAB))
+    report.write(tmp_path / "a.md", report.page(odd, LAB))
+    assert "caf" in (tmp_path / "a.csv").read_text() and "caf" in (tmp_path / "a.md").read_text()
+
+
+def test_a_fault_of_the_grader_costs_one_row(pristine, tmp_path, monkeypatch):
+    def fail(*_):
+        raise KeyError("ours")
+
+    for name in ("a.ipynb", "b.ipynb"):
+        submissions.write(tmp_path / name, submissions.answered())
+    with Batch(pristine, tmp_path, Limits()) as batch:
+        monkeypatch.setattr(batch, "_run", fail)
+        rows = list(batch.grade(sorted(tmp_path.iterdir()), jobs=2))
+    assert [r["status"] for r in rows] == ["crashed"] * 2
+    assert all(r["score"] is None and "KeyError: 'ours'" in r["detail"] for r in rows)
+
+
 def test_a_page_shows_markup_as_text():
     got = record("<b>ann|", p1b=(0.0, "", "all-rooms"))
     got["texts"] = {"p3c": "p3c = '''\n```\n# not a heading\n'''"}
@@ -173,6 +195,29 @@ def test_a_page_shows_markup_as_text():
     names = report.page_names([record("A b"), record("a_b"), record("../x"), record("é" * 300)])
     assert len({n.lower() for n in names.values()}) == 4
     assert all("/" not in n and len(n.encode()) < 200 for n in names.values())
+
+
+def test_what_was_left_out_is_one_line():
+    text = report.page(record("ann", p1b=(0.5, "", "")), LAB)
+    assert "| p1b |" in text and "| p1a |" in text, "not reached is not the same as blank"
+    blank = record("ann") | {"items": {i: {"status": "unanswered"} for i in LAB.items}}
+    blank["texts"] = {"p3c": 'p3c = "..."'}
+    text = report.page(blank, LAB)
+    assert f"Not answered: {', '.join(LAB.items)}." in text and "Model" not in text
+
+
+@pytest.mark.parametrize(
+    ("path", "name"),
+    [
+        ("ann.ipynb", "ann"),
+        ("ann/lab3.ipynb", "ann"),
+        ("group 1/ann/Lab_3 particle.ipynb", "group 1/ann"),
+        ("group 1/ann.json", "group 1/ann"),
+        ("lab3.ipynb", "lab3"),
+    ],
+)
+def test_whose_file_is_it(path, name):
+    assert student(Path(path), "lab3") == name
 
 
 def test_the_bar_ends_at_all(capsys):

@@ -9,7 +9,7 @@ answer cells are taken and put into the lab's own notebook.
 status          meaning
 ==============  ========================================================================
 ``ok``          every answer cell ran; the score counts
-``errors``      an answer raised an exception and earns nothing; the score counts
+``errors``      an answer raised an exception; the score counts
 ``missing``     an answer cell is gone, or nothing at all is answered
 ``timeout``     a cell ran longer than ``--cell-timeout``, or all of them than ``--wall``
 ``crashed``     Python ended before the last cell
@@ -23,7 +23,8 @@ wrong". The columns of the items show what was earned in every case.
 Parts, in the order a submission meets them: `submission` (what is in the file), `suspicion` (does
 it reach for the checker?), `notebook` (which cells run), `batch` (jobs and journal), `warden`
 (limits from outside: time, and that nothing is left running), `runner` (executes the cells),
-`seal` (limits from inside: memory, files, an unchanged checker), `report` (tables and pages).
+`seal` (limits from inside: memory, files, an unchanged checker), `outcome` (status and score),
+`report` (tables and pages).
 
 **Not a sandbox.** Answers run with your rights. Linux refuses writes outside the temporary folder
 (Landlock, kernel 5.13 or newer) and limits memory and file size; macOS does only part of it,

@@ -4,27 +4,27 @@ import hashlib
 import importlib
 import json
 import os
+import re
 import shutil
 import subprocess
 import sys
 import tempfile
 import threading
 import time
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterator
 from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import pfkit
-from pfkit.labs.grade import submission, suspicion, warden
+from pfkit.labs.grade import outcome, submission, suspicion, warden
 from pfkit.labs.grade.notebook import Pristine, steps
 from pfkit.labs.grade.submission import Answers, Malformed
 from pfkit.labs.items import Text
 from pfkit.labs.lab import Lab
 
 Record = dict[str, Any]
-GRADED = ("ok", "errors")
 KEPT_FROM_OUTSIDE = ("PATH", "LANG", "LC_ALL", "LD_LIBRARY_PATH", "SYSTEMROOT", "VIRTUAL_ENV")
 
 
@@ -98,23 +98,27 @@ class Batch:
         began = time.monotonic()
         record = self._blank(path)
         try:
-            answers = submission.read(
-                path, self.pristine.lab, self.pristine.stubs, self.pristine.variables
-            )
+            record |= self._judged(path)
         except Malformed as error:
-            return record | {"status": "malformed", "detail": str(error)}
+            record |= {"status": "malformed", "detail": str(error)}
+        except Exception as error:  # one row each: a fault of ours must not stop the batch
+            told = f"the grader itself failed, {type(error).__name__}: {error}"
+            record |= {"status": "crashed", "detail": told[:300]}
+        return record | {"seconds": round(time.monotonic() - began, 1)}
+
+    def _judged(self, path: Path) -> Record:
+        lab, stubs, variables = self.pristine.lab, self.pristine.stubs, self.pristine.variables
+        answers = submission.read(path, lab, stubs, variables)
         for item, source in answers.sources.items():
-            answers.doubts += suspicion.doubts(item, source, self.pristine.lab, self._module)
+            answers.doubts += suspicion.doubts(item, source, lab, self._module)
         found = self._run(answers)
-        record |= self._judge(answers, found)
-        record["seconds"] = round(time.monotonic() - began, 1)
-        return record
+        return outcome.judge(lab, answers, found, self.limits.cell_timeout, self.limits.wall)
 
     def _blank(self, path: Path) -> Record:
         lab = self.pristine.lab
         name = path.relative_to(self.folder)
         return {
-            "student": name.with_suffix("").as_posix(),
+            "student": student(name, lab.name),
             "file": name.as_posix(),
             "status": "",
             "score": None,
@@ -193,68 +197,12 @@ class Batch:
             "PFKIT_WIDGETS": "off",
         }
 
-    # -- what came of it ---------------------------------------------------------------------
 
-    def _judge(self, answers: Answers, found: dict[str, Any]) -> Record:
-        events, lab = found["events"], self.pristine.lab
-        items = {i: {"status": "missing", "detail": "no answer cell"} for i in answers.missing}
-        items |= {e["item"]: e for e in events if e.get("item") in lab.items and "status" in e}
-        items = {i: items[i] for i in lab.items if i in items}
-        doubts = answers.doubts + [e["doubt"] for e in events if "doubt" in e]
-        if found["strange"]:
-            doubts.append("wrote to the channel of the grader")
-        if found["left"] > 0 and not found["timeouts"]:
-            doubts.append(f"{found['left']} of its processes ran on and were ended")
-        status, told = self._status(answers, found, items, dict.fromkeys(doubts))
-        score = sum(e.get("score") or 0.0 for e in items.values())
-        return {
-            "status": status,
-            "score": round(score, 3) if status in GRADED else None,
-            "items": items,
-            "texts": {i.id: answers.sources[i.id] for i in lab.items.values()
-                      if isinstance(i, Text) and i.id in answers.sources},
-            "detail": "; ".join(dict.fromkeys(told + answers.notes))[:1000],
-        }  # fmt: skip
-
-    def _status(
-        self, answers: Answers, found: dict[str, Any], items: Record, doubts: Iterable[str]
-    ) -> tuple[str, list[str]]:
-        """The first that applies, worst first, and everything there is to say."""
-        ended = any("end" in e for e in found["events"])
-        at = next((e["begin"] for e in reversed(found["events"]) if "begin" in e), "")
-        raised = {i: e.get("raised") or e["detail"] for i, e in items.items()
-                  if e["status"] == "error" or e.get("raised")}  # fmt: skip
-        blank = all(e["status"] in ("unanswered", "locked", "missing") for e in items.values())
-        told, cell, wall = [], self.limits.cell_timeout, self.limits.wall
-        for item in found["timeouts"]:
-            told.append(
-                f"not done in {wall:g} s"
-                if item == "all"
-                else f"{item or 'a cell'}: not done in {cell:g} s"
-            )
-        if not ended and not found["timeouts"]:
-            told.append(f"Python ended with code {found['exit']} in {at or 'the first cell'}")
-        told += doubts
-        if answers.missing:
-            told.append(f"no answer cell for {', '.join(answers.missing)}")
-        if ended and blank and not raised:
-            told.append("nothing is answered")
-        told += [f"{i}: {_where(words, answers)}" for i, words in raised.items()]
-        order = {
-            "timeout": found["timeouts"],
-            "crashed": not ended,
-            "review": doubts,
-            "missing": answers.missing or (blank and not raised),
-            "errors": raised,
-        }
-        return next((name for name, applies in order.items() if applies), "ok"), told
-
-
-def _where(words: str, answers: Answers) -> str:
-    name = words.partition("name '")[2].partition("'")[0]
-    if words.startswith("NameError") and name in answers.elsewhere:
-        return f"{words}; {name} is made in a cell that is no answer cell, and is not run"
-    return words
+def student(name: Path, lab: str) -> str:
+    """``ann.ipynb`` and ``ann/lab3_final.ipynb`` are ann's; other folders stay in the name."""
+    stem = re.sub(r"[\W_]+", "", name.stem.lower())
+    same = len(name.parts) > 1 and stem.startswith(lab)
+    return (name.parent if same else name.with_suffix("")).as_posix()
 
 
 def remove(folder: Path) -> None:

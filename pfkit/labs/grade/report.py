@@ -22,7 +22,7 @@ RIGHT = ("passed", "predicted")
 def write(path: Path, text: str) -> None:
     """Replace a file in one step, so that an interruption leaves the old one or the new one."""
     beside = path.with_name(path.name + ".part")
-    beside.write_text(text, encoding="utf-8", newline="")
+    beside.write_text(text, encoding="utf-8", newline="", errors="backslashreplace")
     os.replace(beside, path)
 
 
@@ -120,8 +120,9 @@ def page(record: Record, lab: Lab) -> str:
     score = "not graded" if record["score"] is None else f"{record['score']:g} of {record['max']:g}"
     by_hand = sum(i.points for i in lab.items.values() if isinstance(i, Text))
     head = [
-        f"# {lab.title}: {_plain(record['student'])}",
+        f"# {_plain(record['student'])}",
         "",
+        f"* {lab.title}",
         f"* Score: **{score}**" + (f", and {by_hand:g} points by hand" if by_hand else ""),
         f"* Status: {record['status']}",
         f"* File: {_plain(record['file'])}, SHA-256 {record['sha256'][:12] or 'none'}",
@@ -132,25 +133,32 @@ def page(record: Record, lab: Lab) -> str:
     if not record["items"]:
         return "\n".join(head) + "\n"
     table = ["", "| item | question | points | what happened |", "|---|---|---|---|"]
-    table += [_row(record, item) for item in lab.items.values()]
+    done = [i for i in lab.items.values() if _status(record, i) not in BLANK]
+    table += [_row(record, item) for item in done]
+    blank = [i.id for i in lab.items.values() if i not in done]
+    table += ["", f"Not answered: {', '.join(blank)}."] if blank else []
     return "\n".join(head + table + _texts(record, lab)) + "\n"
 
 
+def _status(record: Record, item: Item) -> str:
+    return str(record["items"].get(item.id, {"status": "not reached"})["status"])
+
+
 def _row(record: Record, item: Item) -> str:
-    got = record["items"].get(item.id, {"status": "not reached"})
+    got = record["items"].get(item.id, {})
+    told = [_status(record, item), got.get("detail"), got.get("hint")]
     earned = points(record, item)
-    told = ". ".join(
-        x.rstrip(".") for x in (got["status"], got.get("detail"), got.get("hint")) if x
-    )
     shown = "by hand" if isinstance(item, Text) else "none" if earned is None else f"{earned:g}"
-    return f"| {item.id} | {_plain(item.title)} | {shown} of {item.points:g} | {_plain(told)} |"
+    words = " ".join(x if x[-1] in ".?!" else x + "." for x in told if x)
+    return f"| {item.id} | {_plain(item.title)} | {shown} of {item.points:g} | {_plain(words)} |"
 
 
 def _texts(record: Record, lab: Lab) -> list[str]:
     lines: list[str] = []
     for name, source in record["texts"].items():
         item = lab.items[name]
-        assert isinstance(item, Text)
+        if not isinstance(item, Text) or _status(record, item) in BLANK:
+            continue
         fence = "`" * max(3, 1 + max(map(len, re.findall("`+", source)), default=0))
         lines += ["", f"## {name}: {_plain(item.title)} ({item.points:g} by hand)", ""]
         lines += [fence + "python", source.strip()[:5000], fence, ""]
