@@ -396,7 +396,7 @@ ushape_x = Experiment(
 
 why = Text(
     id="why",
-    title="Why can a gate lock a filter out?",
+    title="Why can a gate lock a filter out that starts anywhere?",
     rubric=(
         "says that a wide cloud has a small mean likelihood for every report",
         "says that rejecting everything keeps the cloud wide, so nothing changes",
