@@ -59,6 +59,10 @@ async function boot(message) {
   const folder = { extractDir: "/lib/python3.12/site-packages" };
   python.unpackArchive(files["numpy.zip"], "zip", folder);
   python.unpackArchive(files["pfkit.zip"], "zip", folder);
+  /* Cells of a chapter read "../data": stand beside it, as notebooks do. */
+  python.runPython(`import os
+os.makedirs("${folder.extractDir}/notebooks", exist_ok=True)
+os.chdir("${folder.extractDir}/notebooks")`);
   tell("Importing pfkit", 0.9);
   python.runPython("from pfkit.explore.wasm import accept_int64; accept_int64()");
   if (message.kind === "cells") {

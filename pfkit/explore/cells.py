@@ -17,6 +17,7 @@ import contextlib
 import io
 import json
 import linecache
+import symtable
 import sys
 import traceback
 import types
@@ -61,6 +62,10 @@ class Nothing:
         axes = axes if not kwargs.get("squeeze", True) else axes.squeeze()
         return self, axes[()] if axes.ndim == 0 else axes
 
+    def panels(self, n: int, **kwargs: Any) -> tuple[Any, list[Any]]:
+        """What `pfkit.plotting.panels` gives: a figure and n axes."""
+        return self, [self] * n
+
 
 def stand_in_for_figures() -> None:
     """Let ``import matplotlib...``, ``pfkit.plotting`` and ``pfkit.widgets`` succeed."""
@@ -88,20 +93,22 @@ def stand_in_for_figures() -> None:
 
 
 def bound_and_used(source: str) -> tuple[set[str], set[str]]:
-    """Names that a cell binds at its top level, and names that it needs from elsewhere."""
+    """Names that a cell binds at its top level, and global names that it reads.
+
+    What is local to a function counts as neither: an answer may call its log ``log``.
+    """
     try:
-        tree = ast.parse(source)
+        top = symtable.symtable(source, "<cell>", "exec")
     except SyntaxError:
         return set(), set()
-    bound: set[str] = set()
-    used: set[str] = set()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Name):
-            (used if isinstance(node.ctx, ast.Load) else bound).add(node.id)
-        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
-            bound.add(node.name)
-        elif isinstance(node, ast.Import | ast.ImportFrom):
-            bound |= {(a.asname or a.name).split(".")[0] for a in node.names}
+    names = top.get_symbols()
+    bound = {n.get_name() for n in names if n.is_assigned() or n.is_imported() or n.is_namespace()}
+    used = {n.get_name() for n in names if n.is_referenced()}
+    inner = list(top.get_children())
+    while inner:
+        table = inner.pop()
+        inner += table.get_children()
+        used |= {n.get_name() for n in table.get_symbols() if n.is_global()}
     return bound, used - set(dir(builtins))
 
 

@@ -40,6 +40,19 @@ def test_names_that_a_cell_binds_and_needs():
     assert {"np", "f", "y"} <= bound and {"k", "a", "f", "np"} <= used and "print" not in used
 
 
+def test_what_is_local_to_a_function_is_needed_from_nowhere():
+    source = "def f(rng):\n    log = g(rng)\n    return [t + k for t in log]"
+    assert bound_and_used(source) == ({"f"}, {"g", "k"})
+    assert bound_and_used("class A(B):\n    n = 3\n    def m(self): return C")[1] == {"B", "C"}
+
+
+def test_figures_can_be_unpacked_as_the_library_gives_them(cells):
+    text = table(
+        "from pfkit import plotting", "fig, (a, b, c) = plotting.panels(3, height=2)", "a is b"
+    )
+    assert not run(cells, text, 2)["error"]
+
+
 def test_only_what_is_needed_runs(cells):
     text = table("a = 2", "raise SystemExit", "b = a + 1", "print(b)\nb * 10")
     report = run(cells, text, 3)

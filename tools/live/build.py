@@ -150,15 +150,16 @@ def build_runtime(parts: Path) -> None:
 
 
 def pfkit_files() -> dict[str, bytes]:
-    """The part of pfkit that runs in a page."""
+    """The part of pfkit that runs in a page, and the logs beside it, where its loaders look."""
     package = ROOT / "pfkit"
+    logs = [p for p in (ROOT / "data").rglob("*") if p.suffix in (".txt", ".dat", ".csv")]
     names = [p for p in package.rglob("*") if p.suffix in (".py", ".json", ".npz", ".csv", ".txt")]
     return {
         "pfkit/" + p.relative_to(package).as_posix(): p.read_bytes()
         for p in names
         if not p.relative_to(package).as_posix().startswith(NOT_IN_PAGE)
         and "__pycache__" not in p.parts
-    }
+    } | {p.relative_to(ROOT).as_posix(): p.read_bytes() for p in logs}
 
 
 def packed(path: Path) -> str:
@@ -214,7 +215,7 @@ def main() -> int:
         except Missing as problem:
             reason = str(problem)
             shutil.rmtree(PARTS, ignore_errors=True)
-    state = made_from + digest(ROOT / "pfkit", *OURS) + reason
+    state = made_from + digest(ROOT / "pfkit", ROOT / "data", *OURS) + reason
     if not (SITE.exists() and (CACHE / "site.stamp").exists()
             and (CACHE / "site.stamp").read_text() == state):  # fmt: skip
         CACHE.mkdir(parents=True, exist_ok=True)
