@@ -18,28 +18,15 @@ from pfkit.chi2 import chi2_quantile, chi2_tail
 from pfkit.geometry import between, circular_mean, compose, inverse, wrap
 
 # L1: beliefs, logs, maps, resampling
-from pfkit.particles import (
-    Particles,
-    equal_log_weights,
-    ess,
-    from_weights,
-    gaussian_prior,
-    normalise,
-    uniform_prior,
-)
+from pfkit.particles import Particles, equal_log_weights, ess, from_weights, normalise
+from pfkit.priors import gaussian_prior, uniform_prior
 from pfkit.log import Log, Step
 from pfkit.maps import LandmarkMap
 from pfkit.occupancy import OccupancyGrid
 from pfkit.distance import distance_field
 from pfkit.raycast import RayCaster
-from pfkit.resampling import (
-    SCHEMES,
-    multinomial,
-    residual,
-    roulette_wheel,
-    stratified,
-    systematic,
-)
+from pfkit.resampling import SCHEMES, multinomial, residual, stratified, systematic
+from pfkit.roulette import roulette_wheel
 from pfkit.survival import survival_probability
 from pfkit.triggers import ess_below, every, information, on_information
 from pfkit.genealogy import (
@@ -77,7 +64,8 @@ from pfkit.density import kde, kde_mode, silverman_bandwidth
 from pfkit.modes import Clusters, clusters
 
 # L3: filters
-from pfkit.filters import History, Info, predict, resample, run, select, step, update
+from pfkit.filters import Info, predict, resample, select, step, update
+from pfkit.history import History, run
 from pfkit.recovery import Memory, augmented_step, inject, poses_seeing
 from pfkit.kld import kld_bound, kld_count, kld_step
 from pfkit.roughening import regularise, roughen

@@ -33,8 +33,8 @@ from pfkit.errors import (
     require_method,
     require_number,
 )
-from pfkit.filters import History
 from pfkit.geometry import wrap
+from pfkit.history import History
 from pfkit.log import Log
 from pfkit.motion import MotionModel
 from pfkit.table import Table, tabulate

@@ -19,8 +19,6 @@ Everything works for one filter ``(D, M)`` and for B side by side ``(D, B, M)``.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
-from dataclasses import dataclass
 from typing import NamedTuple
 
 import numpy as np
@@ -36,8 +34,6 @@ from pfkit.errors import (
     require_method,
     require_rng,
 )
-from pfkit.estimators import covariance, mean_pose
-from pfkit.log import Log
 from pfkit.motion import MotionModel
 from pfkit.particles import Particles, normalise, require_particles
 from pfkit.resampling import Resampler, systematic
@@ -295,90 +291,3 @@ def step(
     copies = select(bel, ancestors)
     log_w = np.where(poor[..., None], copies.log_w, bel.log_w)
     return Particles.trusted(copies.state, log_w), Info(log_evidence, ess, poor, ancestors)
-
-
-@dataclass(frozen=True)
-class History:
-    """What a filter said along a log.
-
-    Parameters
-    ----------
-    t : array (T,), seconds
-    estimate : array (D, T) or (D, T, B), one answer per step
-    covariance : array (D, D, T) or (D, D, T, B)
-    ess : array (T,) or (T, B), before any resampling
-    log_evidence : array (T,) or (T, B)
-    resampled : bool array (T,) or (T, B)
-    truth : array (3, T) or (3, T, B), or None
-    bel : Particles, the last belief
-    """
-
-    t: Array
-    estimate: Array
-    covariance: Array
-    ess: Array
-    log_evidence: Array
-    resampled: NDArray[np.bool_]
-    truth: Array | None
-    bel: Particles
-
-    @property
-    def position_sd(self) -> Array:
-        """Root of the summed position variances, metres: (T,) or (T, B)."""
-        return np.sqrt(self.covariance[0, 0] + self.covariance[1, 1])
-
-    def __repr__(self) -> str:
-        return f"History({len(self.t)} steps, resampled {int(np.sum(self.resampled))} times)"
-
-
-def run(
-    log: Log,
-    bel: Particles,
-    motion: MotionModel,
-    sensor: SensorModel,
-    rng: np.random.Generator,
-    scheme: Resampler = systematic,
-    threshold: float | Trigger = 0.5,
-    estimator: Callable[[Particles], Array] = mean_pose,
-    watch: Callable[[int, Particles, Info], object] | None = None,
-) -> History:
-    """Run the filter along a log.
-
-    Parameters
-    ----------
-    log : Log
-    bel : Particles, the belief before the first control
-    motion, sensor, rng, scheme, threshold
-        As in `step`.
-    estimator : function of a Particles
-        Turns each belief into an answer (D,) or (D, B).
-    watch : function (k, bel, info), optional
-        Called after each step: for progress, film, or genealogy.
-
-    Returns
-    -------
-    History
-
-    Raises
-    ------
-    ParameterError, ShapeError, DataError, DegenerateWeightsError
-        As `step`.
-    """
-    if not isinstance(log, Log):
-        raise ParameterError(f"log must be a Log, got {log!r:.60}; build one with pf.Log(t, u, z)")
-    require_particles(bel)
-    require_rng(rng)
-    T, D, batch = len(log), bel.state.shape[0], bel.log_w.shape[:-1]
-    estimate, spread = np.empty((D, T, *batch)), np.empty((D, D, T, *batch))
-    ess, log_evidence = np.empty((T, *batch)), np.empty((T, *batch))
-    resampled = np.zeros((T, *batch), dtype=bool)
-    for k, (_, u, z, _) in enumerate(log):
-        bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold, k)
-        log_evidence[k], ess[k], resampled[k] = info.log_evidence, info.ess, info.resampled
-        estimate[:, k], spread[:, :, k] = estimator(bel), covariance(bel)
-        if watch is not None:
-            watch(k, bel, info)
-    truth = log.truth
-    if truth is not None and batch and truth.ndim == 4:
-        truth = truth[..., 0]
-    return History(log.t, estimate, spread, ess, log_evidence, resampled, truth, bel)

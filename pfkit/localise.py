@@ -41,7 +41,8 @@ from pfkit.odometry import (
     fill_in,
     informative_steps,
 )
-from pfkit.particles import Particles, gaussian_prior, uniform_prior
+from pfkit.particles import Particles
+from pfkit.priors import gaussian_prior, uniform_prior
 from pfkit.resampling import systematic
 from pfkit.sensors import Sensor
 from pfkit.tempering import tempered_update

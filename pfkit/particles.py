@@ -26,7 +26,6 @@ independent filters run side by side. Log-weights have the shape without the fir
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -38,18 +37,8 @@ from pfkit.errors import (
     ShapeError,
     as_numbers,
     require_finite,
-    require_method,
-    require_non_negative,
-    require_rng,
     require_shape,
 )
-from pfkit.geometry import wrap
-
-
-class SamplesPoses(Protocol):
-    """A map that can draw poses uniformly over the places where the robot can be."""
-
-    def sample_poses(self, shape: Shape, rng: np.random.Generator) -> NDArray[np.float64]: ...
 
 
 @dataclass(frozen=True)
@@ -288,74 +277,3 @@ def from_weights(state: ArrayLike, w: ArrayLike | None = None) -> Particles:
         raise ShapeError(f"w must have shape {state.shape[1:]} to match state, got {w.shape}")
     with np.errstate(divide="ignore"):  # log 0 = -inf is what a weight of zero means
         return Particles(state, normalise(np.log(w))[0])
-
-
-def uniform_prior(M: Shape, world: SamplesPoses, rng: np.random.Generator) -> Particles:
-    """Know nothing but the map: poses uniform over its free space, heading on the circle.
-
-    Parameters
-    ----------
-    M : int or (B, M)
-        Number of particles, or the shape of a batch.
-    world : map with ``sample_poses(shape, rng)``
-        `LandmarkMap` (its bounding box) or `OccupancyGrid` (its free cells).
-    rng : numpy.random.Generator
-
-    Returns
-    -------
-    Particles with equal weights
-
-    Raises
-    ------
-    ParameterError
-        If M is not a whole number of at least 1, or `world` cannot draw poses.
-
-    Notes
-    -----
-    Source: Probabilistic Robotics, Table 8.2 and section 8.3.1 (global localisation).
-    """
-    shape = require_shape("number of particles M", M)
-    require_method("world", world, "sample_poses")
-    require_rng(rng)
-    return Particles(world.sample_poses(shape, rng), equal_log_weights(shape))
-
-
-def gaussian_prior(
-    M: Shape, mean: ArrayLike, Sigma: ArrayLike, rng: np.random.Generator, heading: bool = True
-) -> Particles:
-    """Know the state up to a Gaussian error.
-
-    Parameters
-    ----------
-    M : int or (B, M)
-    mean : array_like (D,), metres and radians
-    Sigma : array_like (D, D) covariance, or (D,) standard deviations, which may be 0
-    rng : numpy.random.Generator
-    heading : bool
-        Whether the third component is a heading, to be wrapped.
-
-    Returns
-    -------
-    Particles with equal weights
-
-    Raises
-    ------
-    ShapeError, ParameterError
-        If mean and Sigma do not match, or Sigma is not a covariance.
-    """
-    mean, Sigma = require_finite("mean", mean), require_finite("Sigma", Sigma)
-    shape, D = require_shape("number of particles M", M), mean.size
-    require_rng(rng)
-    if mean.ndim != 1 or D == 0 or Sigma.shape not in ((D,), (D, D)):
-        raise ShapeError(f"mean (D,) needs Sigma (D,) or (D, D), got {mean.shape}, {Sigma.shape}")
-    if Sigma.ndim == 1:
-        Sigma = np.diag(require_non_negative("Sigma", Sigma) ** 2)
-    values, vectors = np.linalg.eigh(Sigma)
-    if not np.allclose(Sigma, Sigma.T) or values[0] < -1e-9 * max(values[-1], 1.0):
-        raise ParameterError(f"Sigma must be symmetric and positive, got eigenvalues {values}")
-    root = vectors * np.sqrt(np.maximum(values, 0.0))
-    noise = np.tensordot(root, rng.standard_normal((D, *shape)), axes=1)
-    state = mean.reshape(D, *(1,) * len(shape)) + noise
-    if heading and D >= 3:
-        state[2] = wrap(state[2])
-    return Particles(state, equal_log_weights(shape))

@@ -47,7 +47,8 @@ from pfkit.filters import Info, step
 from pfkit.geometry import wrap
 from pfkit.landmark_sensors import RangeBearing
 from pfkit.motion import MotionModel
-from pfkit.particles import Particles, SamplesPoses, require_particles
+from pfkit.particles import Particles, require_particles
+from pfkit.priors import SamplesPoses
 from pfkit.resampling import Resampler, systematic
 from pfkit.sensors import SensorModel
 

@@ -18,8 +18,7 @@ step with the comb is sampled badly.
 
 Each scheme is a plain function ``scheme(w, rng, n=None)`` that returns ancestor indices
 (int64). Weights may be ``(M,)`` or a batch ``(B, M)``; the result is ``(n,)`` or ``(B, n)``.
-`SCHEMES` names the four. A fifth function, `roulette_wheel`, is a famous teaching example and
-is kept as a specimen: it is almost unbiased, and we can measure the almost.
+`SCHEMES` names the four. A fifth, `roulette_wheel`, is kept as a specimen in a module of its own.
 """
 
 from __future__ import annotations
@@ -233,45 +232,6 @@ def residual(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> In
         return kept
     rest = np.maximum(expected - copies, 0.0)
     return np.sort(np.concatenate((kept, multinomial(rest, rng, n - kept.size))))
-
-
-def roulette_wheel(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
-    r"""The resampling wheel of a famous first course: a specimen, not a recommendation.
-
-    Start at the edge of a particle that is chosen *uniformly*, then walk round the wheel in n
-    independent steps, each uniform on 0 to twice the largest weight:
-
-    .. math:: b_k = b_{k-1} + 2\, w_{\max} U_k , \qquad U_k \sim \mathcal U(0, 1)
-
-    It looks like systematic resampling and needs n + 1 random numbers instead of one. The walk
-    forgets its start only slowly, and the start ignores the weights: for few particles
-    :math:`E[N_m]` is *not* :math:`n w_m`. Its copies also scatter more than a comb's.
-
-    Parameters
-    ----------
-    w : array_like (M,) or (B, M), non-negative
-    rng : numpy.random.Generator
-    n : int, optional
-
-    Returns
-    -------
-    int64 array (n,) or (B, n), ancestor indices in the order of the walk, *not* sorted
-
-    Raises
-    ------
-    ParameterError, ShapeError, DegenerateWeightsError
-        As `multinomial`.
-
-    Notes
-    -----
-    Source: S. Thrun, CS373 Programming a Robotic Car, unit 3 (2012). O(M + n log M).
-    """
-    w, edges, n = _read(w, rng, n)
-    total, batch = edges[..., -1:], w.shape[:-1]
-    start = rng.integers(w.shape[-1], size=(*batch, 1))
-    first = np.take_along_axis(edges - w, start, axis=-1) / total  # the start's left edge
-    steps = 2 * w.max(axis=-1, keepdims=True) / total * rng.random((*batch, n))
-    return _find(edges, (first + np.cumsum(steps, axis=-1)) % 1.0)
 
 
 SCHEMES: dict[str, Resampler] = {

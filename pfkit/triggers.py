@@ -21,7 +21,7 @@ particles as the ESS does, but a few heavy weights frighten it less.
 Whatever the trigger says, `filters.step` never resamples after a step without a measurement:
 nothing was learnt, and copies would be lost for nothing.
 
-Hand a trigger to `filters.step` or `filters.run` as `threshold`; a plain number x there is
+Hand a trigger to `filters.step` or `history.run` as `threshold`; a plain number x there is
 short for ``ess_below(x)``.
 """
 

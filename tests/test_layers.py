@@ -20,8 +20,18 @@ PACKAGE = ROOT / "pfkit"
 LAYERS: dict[str, list[str]] = {
     "L0": ["errors", "chi2", "geometry"],
     "L1": [
-        *["particles", "log", "maps", "map_files", "occupancy", "worlds", "distance", "raycast"],
-        *["resampling", "survival", "triggers", "genealogy"],
+        *[
+            "particles",
+            "priors",
+            "log",
+            "maps",
+            "map_files",
+            "occupancy",
+            "worlds",
+            "distance",
+            "raycast",
+        ],
+        *["resampling", "roulette", "survival", "triggers", "genealogy"],
     ],
     "L2": [
         *["motion", "odometry_motion", "wheels", "targets", "sensors", "landmark_sensors"],
@@ -38,6 +48,7 @@ LAYERS: dict[str, list[str]] = {
     "L3": [
         *["estimators", "density", "modes"],
         "filters",
+        "history",
         *["recovery", "kld", "roughening"],
         *["kalman", "gaussian", "smoother"],
         *["histogram", "posegrid", "gridfilter"],
