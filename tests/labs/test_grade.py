@@ -14,7 +14,9 @@ from pathlib import Path
 import pytest
 import submissions
 
-from pfkit.labs import lab3
+from pfkit.labs import catalogue, lab3
+from pfkit.labs.grade.batch import Batch, CannotGrade, Limits
+from pfkit.labs.grade.notebook import find
 
 pytestmark = pytest.mark.skipif(sys.platform != "linux", reason="limits are those of Linux")
 
@@ -127,6 +129,20 @@ def test_statistics_and_a_page_each(batch):
     assert int(rows["p1a"]["answered"]) + int(rows["p1a"]["blank"]) == len(graded)
     assert rows["p1a"]["choices"].startswith("a 1, c ")
     assert len(list((top / "grades_reports").glob("*.md"))) == len(cases)
+
+
+@pytest.mark.parametrize("name", catalogue.names())
+def test_every_lab_can_be_graded(name, tmp_path):
+    with Batch(find(name), tmp_path, Limits()) as rehearsed:
+        rehearsed.rehearse()
+
+
+def test_a_broken_installation_is_said_once(tmp_path, monkeypatch):
+    (tmp_path / "numpy.py").write_text("raise ImportError('no numpy here')")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    with Batch(find("lab3"), tmp_path, Limits()) as broken:
+        with pytest.raises(CannotGrade, match="no numpy here"):
+            broken.rehearse()
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGKILL])

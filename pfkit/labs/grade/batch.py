@@ -84,8 +84,9 @@ class Batch:
         unlike = {i: s for i, s in checked.items() if s not in ("unanswered", "locked")}
         unlike |= {i: "not reached" for i in self.pristine.lab.items if i not in checked}
         if unlike or found["timeouts"]:
-            why = [e["broken"] for e in found["events"] if "broken" in e] or [str(unlike)[:300]]
-            raise CannotGrade(f"the unanswered {self.pristine.path.name} does not run: {why[0]}")
+            why = next((e["broken"] for e in found["events"] if "broken" in e), "")
+            why = why or found["stderr"] or str(unlike)
+            raise CannotGrade(f"the unanswered {self.pristine.path.name} does not run: {why[:300]}")
         return time.monotonic() - began
 
     def grade(self, files: list[Path], jobs: int) -> Iterator[Record]:
@@ -149,7 +150,7 @@ class Batch:
             remove(folder)
 
     def _under_warden(self, folder: Path) -> dict[str, Any]:
-        lost = {"events": [], "timeouts": [], "strange": 0, "left": 0, "exit": None}
+        lost = {"events": [], "timeouts": [], "strange": 0, "left": 0, "exit": None, "stderr": ""}
         command = [sys.executable, "-I", warden.__file__, str(folder)]
         command += [str(self.limits.cell_timeout), str(self.limits.wall)]
         with self._lock:
@@ -184,12 +185,13 @@ class Batch:
     def _environment(self, folder: Path) -> dict[str, str]:
         """Little of ours: no tokens, no home folder, one thread per submission."""
         package = str(Path(pfkit.__file__).parents[1])
+        paths = filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))
         threads = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
         return {
             **{k: os.environ[k] for k in KEPT_FROM_OUTSIDE if k in os.environ},
             **dict.fromkeys(threads, "1"),
-            **dict.fromkeys(("HOME", "TMPDIR", "TEMP", "TMP"), str(folder)),
-            "PYTHONPATH": os.pathsep.join([package, *os.environ.get("PYTHONPATH", "").split()]),
+            **dict.fromkeys(("HOME", "USERPROFILE", "TMPDIR", "TEMP", "TMP"), str(folder)),
+            "PYTHONPATH": os.pathsep.join([package, *paths]),
             "PYTHONDONTWRITEBYTECODE": "1",
             "PYTHONHASHSEED": "0",
             "MPLBACKEND": "Agg",

@@ -89,7 +89,7 @@ class Watch:
         self._runner = subprocess.Popen(
             [sys.executable, "-P", "-m", "pfkit.labs.grade.runner", "job.json"],
             cwd=folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE,
-            stderr=subprocess.DEVNULL, start_new_session=True,
+            stderr=subprocess.PIPE, start_new_session=True,
         )  # fmt: skip
         assert self._runner.stdin and self._runner.stdout
         with contextlib.suppress(OSError):
@@ -161,7 +161,11 @@ class Watch:
         elif code is None:
             subprocess.run(["taskkill", "/T", "/F", "/PID", str(self._runner.pid)], check=False)
         kill_all(os.getpid())
+        self._runner.wait()
+        assert self._runner.stderr  # closed by the runner once it runs: holds its first words only
+        told = self._runner.stderr.read(100_000).decode(errors="replace").strip().splitlines()
         return {
+            "stderr": told[-1] if told else "",
             "events": self.events,
             "timeouts": self.timeouts,
             "strange": self.strange,
