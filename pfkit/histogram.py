@@ -97,7 +97,7 @@ def predict_1d(bel: ArrayLike, kernel: ArrayLike, ring: bool = False) -> Array:
 
     Notes
     -----
-    Source: Probabilistic Robotics, Table 8.1, line 3. Cost O(n (2 k + 1)).
+    Source: Probabilistic Robotics, Table 4.1, line 3. Cost O(n (2 k + 1)).
     """
     bel, kernel = _probabilities("bel", bel), _probabilities("kernel", kernel)
     if kernel.ndim != 1 or kernel.size % 2 == 0:
@@ -139,7 +139,7 @@ def update_1d(bel: ArrayLike, likelihood: ArrayLike) -> tuple[Array, Array | np.
 
     Notes
     -----
-    Source: Probabilistic Robotics, Table 8.1, line 4.
+    Source: Probabilistic Robotics, Table 4.1, line 4.
     """
     bel, likelihood = _probabilities("bel", bel), require_finite("likelihood", likelihood)
     if likelihood.ndim == 0 or likelihood.shape[-1] != bel.shape[-1]:

@@ -51,8 +51,9 @@ def text(cell):
 
 
 def is_lab_cell(cell):
-    """Answer and check cells are the student's, not the chapter's."""
-    return "answer" in cell["metadata"] or bool(LAB_CALL.search(text(cell)))
+    """Answer and check cells are the student's; a removed cell is for Jupyter alone."""
+    removed = "remove-cell" in cell["metadata"].get("tags", [])
+    return removed or "answer" in cell["metadata"] or bool(LAB_CALL.search(text(cell)))
 
 
 def has_figure(cell):

@@ -122,7 +122,7 @@ looked = Numeric(
 
 markov = Choice(
     id="markov",
-    title="A wet patch that is not on the map",
+    title="A wet patch that nobody has located",
     options={
         "a": "none, slip is just noise",
         "b": "that a move depends only on the start cell and the control",
@@ -202,6 +202,17 @@ correct = Code(
         "joint = bel * likelihood; return joint / joint.sum(), joint.sum()",
     ),
     misconceptions=(
+        Misconception(
+            "in-place",
+            "changes the array it was given",
+            (
+                "What does the caller's belief look like afterwards?",
+                "bel *= likelihood writes into the argument.",
+                "Make a new array: joint = bel * likelihood",
+            ),
+            lambda bel, like: (np.divide(np.multiply(bel, like, out=bel), bel.sum(), out=bel), 1.0),
+            lambda f: bool(not _untouched(f)),
+        ),
         Misconception(
             "likelihood-only",
             "normalises the likelihood and forgets the belief",
@@ -412,14 +423,25 @@ zero_x = Experiment(
     misconceptions=(
         Misconception(
             "honest",
-            "lets the filter assume the true false-alarm rate, so hardly any robot is lost",
+            "lets the filter assume the true false-alarm rate, so no robot is lost",
             (
                 "What does the filter assume about walls?",
                 "The filter's false-alarm rate is 1e-12, the real one 0.05.",
                 "assumed=(0.8, 1e-12)",
             ),
             lambda rng: _zero_run(rng, 0.05),
-            lambda x: bool(x.mean() < 0.2),
+            lambda x: bool((x == 0).all()),
+        ),
+        Misconception(
+            "last-look",
+            "looks at too few of the 40 steps",
+            (
+                "The question is whether it ever happened.",
+                "Look at the true cell after every step, not only the last.",
+                "after[np.arange(40), 0, cells[:, 0]].min()",
+            ),
+            lambda rng: _zero_run(rng) * float(rng.random() < 0.1),
+            lambda x: bool(np.isin(x, (0, 1)).all() and 0 < x.mean() < 0.5),
         ),
         Misconception(
             "share",

@@ -151,11 +151,11 @@ threshold = Numeric(
     ),
     misconceptions=(
         Misconception(
-            "squared",
-            "squares the variance once more",
+            "no-scale",
+            "leaves the scale of the weights out: nothing is left of the variance",
             (
-                "s^2 already is the variance.",
-                "4e-10 is s^2, not s.",
+                "Weights are of size 1 / M. Did you include M (M - 1)?",
+                "M (M - 1) s^2 = 999000 * 4e-10 = 0.0004.",
                 "1000 / (1 + 999000 * 4e-10).",
             ),
             1000.0,
@@ -163,7 +163,7 @@ threshold = Numeric(
         ),
         Misconception(
             "sd",
-            "takes the threshold for a standard deviation's square root",
+            "puts the root of the variance into the formula",
             (
                 "Which power of s stands in the formula?",
                 "Use 4e-10 as it is.",

@@ -15,6 +15,7 @@ split = ("b", 60)
 radius = 0.5 / (np.pi / 2)
 hand = (radius, -radius)
 
+
 # %% arc
 def arc(pose, v, omega, dt):
     # BEGIN SOLUTION
@@ -25,6 +26,7 @@ def arc(pose, v, omega, dt):
     return np.array([x + c * np.cos(theta + half), y + c * np.sin(theta + half), heading])
     # END SOLUTION
 
+
 # %% sample
 def sample(pose, u, alpha, rng):
     # BEGIN SOLUTION
@@ -34,6 +36,7 @@ def sample(pose, u, alpha, rng):
     return arc(pose, v_hat, omega_hat, dt)
     # END SOLUTION
 
+
 # %% wheels
 left, right = 0.1 * 8, 0.1 * 12
 wheels = ((left + right) / 2, (right - left) / 0.5, 1.0 / 0.8)
@@ -42,9 +45,7 @@ wheels = ((left + right) / 2, (right - left) / 0.5, 1.0 / 0.8)
 vehicle = "b"
 
 # %% odometry
-rot1, trans, rot2 = pf.odometry_control(
-    [2, 1, np.radians(90)], [1, 2, np.radians(-150)]
-)
+rot1, trans, rot2 = pf.odometry_control([2, 1, np.radians(90)], [1, 2, np.radians(-150)])
 odometry = (np.degrees(rot1), trans, np.degrees(rot2))
 
 # %% drift
@@ -52,6 +53,7 @@ drift = 0.02 * np.sqrt(np.sum(np.arange(1, 11) ** 2))
 
 # %% literal
 literal = "b"
+
 
 # %% rigid_x
 def rigid_x(rng):
@@ -62,6 +64,7 @@ def rigid_x(rng):
     spread = [np.sqrt(cloud[:2].var(axis=1).sum()) for cloud in (own, common)]
     return spread[0] / spread[1]
     # END SOLUTION
+
 
 # %% split_x
 def split_x(rng):
@@ -74,6 +77,7 @@ def split_x(rng):
         spread.append(cloud[0].std())
     return spread[0] / spread[1]
     # END SOLUTION
+
 
 # %% why
 why = (

@@ -27,6 +27,7 @@ sd = np.exp(-36 / 18) / np.exp(-36 / 6)
 # %% field
 field = "b"
 
+
 # %% expected
 def expected(pose, m):
     # BEGIN SOLUTION
@@ -34,12 +35,14 @@ def expected(pose, m):
     return np.hypot(dx, dy), pf.wrap(np.arctan2(dy, dx) - pose[2])
     # END SOLUTION
 
+
 # %% place
 def place(pose, r, phi):
     # BEGIN SOLUTION
     x, y, theta = pose
     return x + r * np.cos(theta + phi), y + r * np.sin(theta + phi)
     # END SOLUTION
+
 
 # %% score
 def score(z, m, pose, sigma_r, sigma_phi):
@@ -52,12 +55,14 @@ def score(z, m, pose, sigma_r, sigma_phi):
     return total
     # END SOLUTION
 
+
 # %% average_x
 def average_x(rng):
     # BEGIN SOLUTION
     (product, average), _ = look(rng, 2)
     return average / product
     # END SOLUTION
+
 
 # %% beams_x
 def beams_x(rng):
@@ -69,6 +74,7 @@ def beams_x(rng):
     p = np.exp(pf.log_gaussian(robot - cloud, 0.1)).prod(axis=0)
     return np.mean(p == 0)
     # END SOLUTION
+
 
 # %% why
 why = (

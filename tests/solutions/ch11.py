@@ -26,6 +26,7 @@ nats = 0.75 * np.log(3)
 # %% founders
 founders = np.exp(-1)
 
+
 # %% copies
 def copies(pose, n, centre):
     # BEGIN SOLUTION
@@ -36,6 +37,7 @@ def copies(pose, n, centre):
     return np.stack((x, y, pf.wrap(pose[2] + turn)))
     # END SOLUTION
 
+
 # %% missing
 def missing(W):
     # BEGIN SOLUTION
@@ -44,8 +46,10 @@ def missing(W):
     return np.log(W.size) + np.sum(some * np.log(some))
     # END SOLUTION
 
+
 # %% prior
 prior = "b"
+
 
 # %% luck_x
 def luck_x(rng, runs):
@@ -57,6 +61,7 @@ def luck_x(rng, runs):
     return pf.hypothesis_mass(bel, poses, 3.0).argmax(axis=0)
     # END SOLUTION
 
+
 # %% alive_x
 def alive_x(M, rng):
     # BEGIN SOLUTION
@@ -64,6 +69,7 @@ def alive_x(M, rng):
     bel, _ = pf.update(bel, sensor.sample(start, rng), sensor)
     return np.sum(pf.hypothesis_mass(bel, pf.images(start, g), 1.5) > 0.01)
     # END SOLUTION
+
 
 # %% report
 report = (

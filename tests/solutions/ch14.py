@@ -14,6 +14,7 @@ held = 0.1 * 0.2 + 0.6 * 0.1 + 0.2 * 0.3
 # %% lever
 lever = 40 * np.sin(np.radians(3))
 
+
 # %% follow
 def follow(u):
     x = y = theta = 0.0
