@@ -327,10 +327,6 @@ predict_line = Code(
 # -- experiments --------------------------------------------------------------------------------
 
 
-def _each(f, rng, runs):
-    return [f(child) for child in rng.spawn(runs)]
-
-
 def _drive(rng, B, T, looks=1, real=(0.8, 0.1), assumed=(0.8, 0.1)):
     x, bel, lowest = rng.integers(CELLS, size=B), np.full((B, CELLS), 1 / CELLS), np.ones(B)
     for _ in range(T):
@@ -356,7 +352,6 @@ twice_x = Experiment(
     runs=40,
     claim="counting each look twice makes robots claim more than they know",
     test="mean of 40 runs (claim minus share right) between 0.05 and 0.3",
-    measure=_each,
     reference=_twice_run,
     properties=(
         Property("mean overconfidence between 0.05 and 0.3", lambda x: bool(0.05 < x.mean() < 0.3)),
@@ -408,7 +403,6 @@ zero_x = Experiment(
     runs=150,
     claim="about three in four robots once give their own cell almost no belief",
     test="share in 150 runs between 0.56 and 0.92",
-    measure=_each,
     reference=_zero_run,
     properties=(
         Property("only zeros and ones", lambda x: bool(np.isin(x, (0, 1)).all())),

@@ -671,10 +671,6 @@ sample = Code(
 # -- experiments --------------------------------------------------------------------------------
 
 
-def _each(f, rng, runs):
-    return [f(child) for child in rng.spawn(runs)]
-
-
 ALPHA = (0.02, 0.002, 0.05, 0.05, 0.005, 0.005)
 U = (1.0, 0.3, 0.5)
 
@@ -704,7 +700,6 @@ rigid_x = Experiment(
     runs=20,
     claim="a cloud with common errors does not grow; one with errors of its own does",
     test="mean ratio of the spreads over 20 runs between 8.5 and 10.5",
-    measure=_each,
     reference=_rigid_run,
     properties=(
         Property("the mean ratio lies between 8.5 and 10.5", lambda x: bool(8.5 < x.mean() < 10.5)),
@@ -779,7 +774,6 @@ split_x = Experiment(
     runs=20,
     claim="a drive cut into 16 steps has a quarter of the standard deviation",
     test="mean ratio over 20 runs between 3.8 and 4.2",
-    measure=_each,
     reference=_split_run,
     properties=(
         Property("the mean ratio lies between 3.8 and 4.2", lambda x: bool(3.8 < x.mean() < 4.2)),

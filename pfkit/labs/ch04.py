@@ -660,10 +660,6 @@ field = Choice(
 # -- experiments --------------------------------------------------------------------------------
 
 
-def _each(f, rng, runs):
-    return [f(child) for child in rng.spawn(runs)]
-
-
 def _spread(bel):
     return np.sqrt(np.trace(pf.covariance(bel)[:2, :2]))
 
@@ -694,7 +690,6 @@ average_x = Experiment(
     runs=20,
     claim="averaging leaves the belief three to five times as wide",
     test="median of 20 runs between 3 and 5, none below 2",
-    measure=_each,
     reference=_average_run,
     properties=(
         Property("the averaged belief is the wider one in every run", lambda x: bool(x.min() > 1)),
@@ -766,7 +761,6 @@ beams_x = Experiment(
     runs=30,
     claim="the plain product of five beams is exactly zero for more than half of a lost cloud",
     test="mean of 30 runs between 0.45 and 0.75",
-    measure=_each,
     reference=_beams_run,
     properties=(
         Property("shares between 0 and 1", lambda x: bool((x >= 0).all() and (x <= 1).all())),

@@ -329,10 +329,6 @@ estimate = Code(
 # -- experiments --------------------------------------------------------------------------------
 
 
-def _each(f, rng, runs):
-    return [f(child) for child in rng.spawn(runs)]
-
-
 def _narrow_run(rng, s=0.4, M=1000):
     x = s * rng.standard_normal(M)
     return np.mean(np.exp(pf.log_gaussian(x, 1.0) - pf.log_gaussian(x, s)))
@@ -346,7 +342,6 @@ narrow_x = Experiment(
     runs=100,
     claim="an unbiased mean weight is below 1 in most runs when the proposal is too narrow",
     test="at least 60 of 100 runs below 1, median between 0.7 and 0.95",
-    measure=_each,
     reference=_narrow_run,
     properties=(
         Property(
@@ -402,7 +397,6 @@ dim_x = Experiment(
     runs=20,
     claim="in three dimensions about one particle in a thousand counts",
     test="mean of 20 runs between 0.0009 and 0.0016",
-    measure=_each,
     reference=_dim_run,
     properties=(
         Property(

@@ -422,10 +422,6 @@ frozen = Prediction(
 )
 
 
-def _each(f, rng, runs):
-    return [f(child) for child in rng.spawn(runs)]
-
-
 def _no_copy_run(rng, threshold=0.0, M=1000):
     world = pf.worlds.arena()
     motion = pf.VelocityMotion(alpha=(0.02, 0.002, 0.002, 0.02, 0.002, 0.002))
@@ -444,7 +440,6 @@ no_copy_x = Experiment(
     runs=12,
     claim="without resampling a handful of 1,000 particles carries everything",
     test="median of 12 runs at most 5 and none above 60",
-    measure=_each,
     reference=_no_copy_run,
     properties=(
         Property("an effective sample size: at least 1", lambda x: bool((x >= 1 - 1e-9).all())),
@@ -501,7 +496,6 @@ frozen_x = Experiment(
     runs=20,
     claim="without diffusion the cloud collapses onto one or two particles",
     test="median of 20 runs at most 2 and none above 5",
-    measure=_each,
     reference=_frozen_run,
     properties=(
         Property(

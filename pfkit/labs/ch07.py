@@ -342,10 +342,6 @@ leftover = Code(
 # -- experiments --------------------------------------------------------------------------------
 
 
-def _each(f, rng, runs):
-    return [f(child) for child in rng.spawn(runs)]
-
-
 def _clock_run(rng, N=100):
     k, age = N // 2, 0
     while 0 < k < N:
@@ -361,7 +357,6 @@ clock_x = Experiment(
     runs=150,
     claim="two clusters of 50 last about 2 N ln 2 = 139 multinomial resamplings",
     test="mean of 150 runs between 95 and 185 (exact: 136.6)",
-    measure=_each,
     reference=_clock_run,
     properties=(
         Property(
@@ -408,7 +403,6 @@ best_x = Experiment(
     runs=100,
     claim="with weights in step with the comb, the total of the heavy copies is 500 or 1,000",
     test="variance of 100 runs above 20,000 (multinomial: 188), mean between 600 and 900",
-    measure=_each,
     reference=_best_run,
     properties=(
         Property("mean between 600 and 900", lambda x: bool(600 < x.mean() < 900)),

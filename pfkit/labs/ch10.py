@@ -284,10 +284,6 @@ responsibility = Code(
 # -- experiments --------------------------------------------------------------------------------
 
 
-def _each(f, rng, runs):
-    return [f(child) for child in rng.spawn(runs)]
-
-
 MOTION = pf.CircleTarget(sigma=1.4, sigma_theta=0.01)
 FALSE_HALF = target.target_log("circle", "outliers")[:60]
 CLEAN = target.target_log("circle", "low")[:60]
@@ -306,7 +302,6 @@ lock_x = Experiment(
     runs=20,
     claim="from a start anywhere the gate rejects every report, honest or not",
     test="every one of 20 runs rejects at least 95 %",
-    measure=_each,
     reference=_lock_run,
     properties=(
         Property("a share between 0 and 1", lambda x: bool(((x >= 0) & (x <= 1)).all())),
@@ -358,7 +353,6 @@ ushape_x = Experiment(
     runs=10,
     claim="the gate rejects honest reports at both ends of the modelled noise, none between",
     test="every one of 10 runs: at least 0.7, at most 0.05, at least 0.99",
-    measure=_each,
     reference=_ushape_run,
     properties=(
         Property("three shares", lambda x: bool(x.ndim == 2 and x.shape[1] == 3)),

@@ -338,6 +338,11 @@ class Code(Item):
         )
 
 
+def each_run(f: Callable, rng: np.random.Generator, runs: int) -> list:
+    """Call ``f(rng)`` once per run, each with a stream of its own."""
+    return [f(child) for child in rng.spawn(runs)]
+
+
 @dataclass(frozen=True, kw_only=True)
 class Experiment(Item):
     """X: a claim about many runs of the student's experiment, tested with a declared error rate.
@@ -352,6 +357,7 @@ class Experiment(Item):
         How many runs a check makes.
     measure : callable
         ``measure(f, rng, runs)`` -> outcomes of the runs, an array whose first axis is the runs.
+        By default ``f(rng)`` is called once per run.
     properties : tuple of Property
         Decisions on the outcomes.
     false_fail : float
@@ -364,7 +370,7 @@ class Experiment(Item):
     claim: str
     test: str
     runs: int
-    measure: Callable[[Any, np.random.Generator, int], Any]
+    measure: Callable[[Any, np.random.Generator, int], Any] = each_run
     reference: Any = None
     properties: tuple[Property, ...] = ()
     false_fail: float = 1e-4

@@ -314,6 +314,7 @@ def test_controls_drive_the_lab(lab, monkeypatch):
 
 def test_controls_are_offered_only_where_a_person_runs_the_cell(lab, monkeypatch):
     pytest.importorskip("ipywidgets")
+    monkeypatch.delenv("PFKIT_WIDGETS", raising=False)
     request = {"metadata": {}}
     kernel = types.SimpleNamespace(get_parent=lambda channel: request)
     shell = types.SimpleNamespace(kernel=kernel)
