@@ -7,28 +7,17 @@ with the reason; in CI that is a failure.
 
 from __future__ import annotations
 
-import importlib.util
 import os
 import subprocess
 import sys
 from pathlib import Path
 
+import browser
 import pytest
 
 ROOT = Path(__file__).resolve().parents[2]
 SITE = ROOT / ".cache" / "live" / "site"
 
-
-def _load(name: str, path: Path):
-    """A module by its path: two test folders may both have a conftest, or a helper, of one name."""
-    spec = importlib.util.spec_from_file_location(name, path)
-    module = importlib.util.module_from_spec(spec)
-    sys.modules[name] = module
-    spec.loader.exec_module(module)
-    return module
-
-
-browser = _load("book_browser", ROOT / "tests" / "book" / "browser.py")
 
 CONF = """
 import sys
@@ -123,20 +112,6 @@ def site(tmp_path_factory) -> Path:
     )
     assert built.returncode == 0, built.stderr[-3000:]
     return out
-
-
-@pytest.fixture(scope="session")
-def chromium():
-    """One browser for all tests here."""
-    program = browser.find_browser()
-    if program is None:
-        require("no Chromium on this machine (apt install chromium, or set PFKIT_BROWSER)")
-    from playwright.sync_api import sync_playwright
-
-    with sync_playwright() as playwright:
-        running = playwright.chromium.launch(executable_path=program, args=browser.FLAGS)
-        yield running
-        running.close()
 
 
 @pytest.fixture(scope="session")

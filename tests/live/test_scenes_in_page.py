@@ -279,7 +279,7 @@ def test_who_asked_for_no_motion_gets_none(open_page):
 @pytest.mark.parametrize("theme", ["light", "dark"])
 @pytest.mark.parametrize("width", [1280, 390])
 def test_axe_finds_nothing_and_nothing_scrolls_sideways(open_page, page_name, theme, width):
-    from book_browser import AXE, SEVERE, check_width
+    from browser import AXE, SEVERE, check_width
 
     if not AXE.exists():
         pytest.skip("axe-core is not fetched (python tools/assets.py)")
