@@ -53,7 +53,7 @@ def test_no_tracked_file_names_a_machine_or_a_registry():
 
 @pytest.mark.parametrize(
     "text",
-    [b'"/work/main/x"', b"/home/ann/book", b" /tmp/a", b'"resolved": "x"', b"https://a:b@host/x"],
+    [b'"/root/book/x"', b"/home/ann/book", b" /tmp/a", b'"resolved": "x"', b"https://a:b@host/x"],
 )
 def test_a_machine_path_is_seen(text):
     assert machine_paths(b"x " + text)
