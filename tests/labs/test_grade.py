@@ -152,7 +152,14 @@ def test_resume_goes_on_where_it_was_interrupted(tmp_path, how):
     submissions.write(folder / "b.ipynb", submissions.answered())
     submissions.write(folder / "c.ipynb", submissions.before("import time\ntime.sleep(600)"))
     words, env = command(folder, output, "--cell-timeout", "500")
-    running = subprocess.Popen(words, env=env, stderr=subprocess.DEVNULL, start_new_session=True)
+    running = subprocess.Popen(
+        words,
+        env=env,
+        stderr=subprocess.DEVNULL,
+        start_new_session=True,
+        # A shell starts its background jobs deaf to Ctrl-C, and children inherit that.
+        preexec_fn=lambda: signal.signal(signal.SIGINT, signal.SIG_DFL),
+    )
     while not output.exists() or len(table(output)) < 2:
         assert running.poll() is None
         time.sleep(0.1)
