@@ -44,14 +44,7 @@ from pfkit.motion import MotionModel, VelocityMotion, drive_arc
 from pfkit.odometry_motion import OdometryMotion, odometry_control
 from pfkit.targets import CircleTarget, FixedTarget, HeadingTarget, LineTarget
 from pfkit.wheels import Bicycle, DifferentialDrive
-from pfkit.sensors import (
-    Compass,
-    Position,
-    Sensor,
-    SensorModel,
-    log_gaussian,
-    log_student,
-)
+from pfkit.sensors import Compass, Position, Sensor, SensorModel, log_gaussian
 from pfkit.landmark_sensors import Bearing, Range, RangeBearing
 from pfkit.association import MaximumLikelihood
 from pfkit.beams import BeamModel
@@ -60,7 +53,7 @@ from pfkit.likelihood_field import LikelihoodField
 from pfkit.intermittent import Intermittent
 from pfkit.robust import Gate, OutlierMixture, Tempered
 from pfkit.estimators import covariance, map_particle, mean_pose, top_share_mean
-from pfkit.density import kde, kde_mode, silverman_bandwidth
+from pfkit.density import kde, silverman_bandwidth
 from pfkit.modes import Clusters, clusters
 
 # L3: filters
@@ -71,15 +64,8 @@ from pfkit.kld import kld_bound, kld_count, kld_step
 from pfkit.roughening import regularise, roughen
 from pfkit.histogram import door_likelihood, predict_1d, shift_kernel, update_1d
 from pfkit.posegrid import PoseGrid, gaussian_grid, uniform_grid
-from pfkit.gridfilter import predict_by_convolution, predict_by_transport, run_grid, update_grid
-from pfkit.oracle import (
-    Divergence,
-    GridNotConverged,
-    converged_grid,
-    equal_mass_boxes,
-    kl_divergence,
-    refinement,
-)
+from pfkit.gridfilter import predict_by_convolution, predict_by_transport, update_grid
+from pfkit.oracle import Divergence, equal_mass_boxes, kl_divergence, refinement
 from pfkit.kalman import Gaussian, kalman_predict, kalman_update
 from pfkit.gaussian import gaussian_predict, gaussian_update, linearise, unscented
 from pfkit.smoother import GaussianHistory, rts_smooth, run_gaussian
@@ -106,13 +92,13 @@ from pfkit.comparison import (
     wilson_interval,
 )
 from pfkit.table import summarise, tabulate
-from pfkit.consistency import coverage, credibility, nees, nees_band
+from pfkit.consistency import coverage, nees, nees_band
 from pfkit.symmetry import hypothesis_mass, images, symmetries
 from pfkit.faults import Outliers, Sight
 from pfkit.odometry import ComposedMotion, Drift, Odometer, compose_odometry, fill_in
 from pfkit.calibration import Calibration, calibrate
 from pfkit.datasets import load_log, load_mrclam, load_plaza
-from pfkit.routes import PurePursuit, commands, odometry_along
+from pfkit.routes import PurePursuit, commands
 from pfkit.logfile import read_log, save_log
 from pfkit.driving import drive
 from pfkit.simulate import sense, simulate_log

@@ -24,9 +24,9 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
-from pfkit.errors import DataError, ParameterError, require_components
+from pfkit.errors import ParameterError
 from pfkit.landmark_sensors import Bearing, Range, RangeBearing
 from pfkit.sensors import Sensor
 
@@ -83,23 +83,11 @@ class MaximumLikelihood(Sensor):
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log density under the landmark that explains zk best, at each pose: shape (...)."""
-        return self._best(zk, pose)[0]
-
-    def associate(self, z: ArrayLike, pose: Array) -> NDArray[np.int64]:
-        """The landmark that each pose finds in each measurement: z (n, K) -> ids (K, ...)."""
-        z, pose = require_components("z", z, self.components, DataError), self.check_state(pose)
-        return np.stack([self._best(z[:, k], pose)[1] for k in range(z.shape[1])])
-
-    def _best(self, zk: Array, pose: Array) -> tuple[Array, NDArray[np.int64]]:
-        """The largest log density over the landmarks, and whose it is; of equals the first."""
         ids = self.sensor.world.ids  # type: ignore[attr-defined]
         best = self._given(ids[0], zk, pose)
-        who = np.full(best.shape, ids[0], dtype=np.int64)
         for s in ids[1:]:
-            log_p = self._given(s, zk, pose)
-            closer = log_p > best
-            best, who = np.where(closer, log_p, best), np.where(closer, s, who)
-        return best, who
+            best = np.maximum(best, self._given(s, zk, pose))
+        return best
 
     def _given(self, s: np.int64, zk: Array, pose: Array) -> Array:
         named = np.concatenate((zk, np.full_like(zk[:1], s)))

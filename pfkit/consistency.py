@@ -9,9 +9,9 @@ The classical test normalises the squared error by the claimed covariance,
 
 .. math:: \mathrm{NEES} = e^T \Sigma^{-1} e ,
 
-which has mean D, and a chi-square distribution when errors are Gaussian. A particle cloud can
-do without the Gaussian: the `credibility` of the truth is the share of the cloud that lies
-nearer to its centre than the truth does, and must be uniform between 0 and 1.
+which has mean D, and a chi-square distribution when errors are Gaussian. `nees_band` says how
+far its average over some runs may stray from D, and `coverage` counts how often the ellipse
+that claims 90 % held the truth.
 
 Steps of one run share their errors. Average over independent *runs*, or the bands lie.
 """
@@ -26,15 +26,10 @@ from pfkit.comparison import Interval, wilson_interval
 from pfkit.errors import (
     ParameterError,
     ShapeError,
-    require_components,
     require_count,
     require_finite,
-    require_instance,
     require_number,
 )
-from pfkit.estimators import covariance, mean_pose
-from pfkit.geometry import wrap
-from pfkit.particles import Particles
 
 Array = NDArray[np.float64]
 
@@ -131,46 +126,3 @@ def coverage(error: ArrayLike, Sigma: ArrayLike, level: float = 0.9) -> Interval
         raise ParameterError(f"level must be in (0, 1), got {level}")
     inside = int(np.sum(distance <= chi2_quantile(level, len(np.asarray(error)))))
     return wilson_interval(inside, distance.size)
-
-
-def credibility(bel: Particles, truth: ArrayLike) -> Array | np.float64:
-    r"""Share of the cloud that lies nearer to its centre than the truth.
-
-    .. math:: c = \sum_m w_m\, [\,d(x_m) < d(x)\,] + \tfrac12 \sum_m w_m\, [\,d(x_m) = d(x)\,],
-              \qquad d(x) = (x - \bar x)^T \Sigma^{-1} (x - \bar x)
-
-    The truth lies in the cloud's 90 % region if c <= 0.9. Over runs of a consistent filter c
-    is uniform: sort the values and plot them against (i - 1/2)/n, the calibration plot. A pile
-    near 1 is confident and wrong.
-
-    Parameters
-    ----------
-    bel : Particles with state (D, M) or (D, B, M), not collapsed to a point
-    truth : array_like (D,), (D, B) or (D, B, 1)
-
-    Returns
-    -------
-    float or (B,), between 0 and 1
-
-    Raises
-    ------
-    ParameterError, ShapeError
-        If `bel` is not a particle set, or the truth is not one pose (per filter).
-    """
-    require_instance("bel", bel, Particles)
-    D, batch = bel.state.shape[0], bel.log_w.shape[:-1]
-    truth = require_finite("truth", require_components("truth", truth, D))
-    if truth.shape not in ((D,), (D, *batch), (D, *batch, 1)):
-        raise ShapeError(f"truth must be (D,) or (D, B), got {truth.shape} for {bel}")
-    truth = (
-        truth.reshape(D, -1)[:, 0]
-        if not batch
-        else np.broadcast_to(truth.reshape(D, -1), (D, *batch))
-    )
-    centre, Sigma = mean_pose(bel), covariance(bel)
-    points = np.concatenate((truth[..., None], bel.state), axis=-1) - centre[..., None]
-    if D >= 3:
-        points[2] = wrap(points[2])
-    d = nees(points, np.broadcast_to(Sigma[..., None], (D, *points.shape)))
-    own, others = d[..., :1], d[..., 1:]
-    return np.sum(bel.w * ((others < own) + 0.5 * (others == own)), axis=-1)

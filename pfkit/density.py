@@ -100,32 +100,6 @@ def kde(bel: Particles, points: ArrayLike, bandwidth: ArrayLike | None = None) -
     return density.reshape(points.shape[1:])
 
 
-def kde_mode(bel: Particles, bandwidth: ArrayLike | None = None) -> Array:
-    r"""The particle in the densest place: an estimate of the maximum a posteriori.
-
-    .. math:: x^{[m^*]}, \qquad m^* = \arg\max_m \hat p(x^{[m]})
-
-    Parameters
-    ----------
-    bel : Particles with state (D, M)
-    bandwidth : array_like (D,) > 0, metres and radians; Silverman's rule if left out
-
-    Returns
-    -------
-    array (D,)
-
-    Raises
-    ------
-    ShapeError, ParameterError
-        As `kde`.
-
-    Notes
-    -----
-    O(M^2): 2,000 particles take four million kernels.
-    """
-    return _single(bel).state[:, np.argmax(kde(bel, bel.state, bandwidth))].copy()
-
-
 def _single(bel: Particles) -> Particles:
     if require_particles(bel).log_w.ndim != 1:
         raise ShapeError(f"a density needs one set (D, M), got a batch {bel.log_w.shape}")

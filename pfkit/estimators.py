@@ -3,8 +3,9 @@
 A filter's output is the cloud. Whoever asks "where is the robot?" wants one pose, and which
 one depends on what an error costs. The weighted mean has the smallest expected squared
 error. For a cloud in two halves it lies between them, perhaps inside a wall: then the mode
-of the heavier half is the better answer, and "two hypotheses" the honest one. `kde_mode` finds
-the densest place; `clusters`, in `modes`, names all hypotheses with their masses.
+of the heavier half is the better answer, and "two hypotheses" the honest one. `kde`, in
+`density`, says where the cloud is densest; `clusters`, in `modes`, names all hypotheses with
+their masses.
 
 The two estimators below that look at single weights, `map_particle` and `top_share_mean`, ask
 before resampling: afterwards all weights are equal and they have nothing to go by.
@@ -85,7 +86,7 @@ def map_particle(bel: Particles) -> NDArray[np.float64]:
 
     The largest weight is not the largest density: a weight says how much better a particle
     explains the data than its proposal did. It comes near the maximum a posteriori only while
-    particles lie evenly; `kde_mode` does not depend on that.
+    particles lie evenly. The particle where `kde` is largest does not depend on that.
 
     Parameters
     ----------

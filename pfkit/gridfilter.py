@@ -15,12 +15,11 @@ model, skips empty cells, and leaves some noise.
 
 Either way the answer carries an error of the size of the cells: a step smears by about half a
 cell more than the robot does. Believe a grid only when halving its cells no longer moves the
-answer; `oracle.converged_grid` checks that.
+answer; `oracle.refinement` says how far it moved.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from itertools import product
 
@@ -37,7 +36,6 @@ from pfkit.errors import (
     require_rng,
 )
 from pfkit.geometry import compose
-from pfkit.log import Log
 from pfkit.motion import MotionModel
 from pfkit.particles import normalise
 from pfkit.posegrid import PoseGrid
@@ -212,43 +210,3 @@ def update_grid(bel: PoseGrid, z: ArrayLike | None, sensor: SensorModel) -> tupl
     log_likelihood = sensor.log_likelihood(require_finite("z", z, DataError), prior.state)
     log_p, log_evidence = normalise(prior.log_w + log_likelihood)
     return replace(bel, p=np.exp(log_p).reshape(bel.p.shape)), float(log_evidence)
-
-
-def run_grid(
-    log: Log,
-    bel: PoseGrid,
-    motion: MotionModel,
-    sensor: SensorModel,
-    rng: np.random.Generator,
-    predict: Callable[..., PoseGrid] = predict_by_convolution,
-    watch: Callable[[int, PoseGrid, float], object] | None = None,
-) -> tuple[PoseGrid, Array]:
-    """Run the histogram filter along a log.
-
-    Parameters
-    ----------
-    log : Log, of one drive
-    bel : PoseGrid, the belief before the first control
-    motion, sensor, rng
-        As in the predict functions and `update_grid`.
-    predict : function, `predict_by_convolution` or `predict_by_transport`
-    watch : function (k, bel, log_evidence), optional
-        Called after each step.
-
-    Returns
-    -------
-    PoseGrid, the last belief
-    log_evidence : array (T,)
-
-    Raises
-    ------
-    ParameterError, ShapeError, DataError, DegenerateWeightsError
-        As the predict functions and `update_grid`.
-    """
-    require_instance("log", log, Log)
-    log_evidence = np.empty(len(log))
-    for k, (_, u, z, _) in enumerate(log):
-        bel, log_evidence[k] = update_grid(predict(bel, u, motion, rng), z, sensor)
-        if watch is not None:
-            watch(k, bel, log_evidence[k])
-    return bel, log_evidence

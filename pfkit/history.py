@@ -38,7 +38,7 @@ class History:
     Parameters
     ----------
     t : array (T,), seconds
-    estimate : array (D, T) or (D, T, B), one answer per step
+    estimate : array (D, T) or (D, T, B), the mean pose after each step
     covariance : array (D, D, T) or (D, D, T, B)
     ess : array (T,) or (T, B), before any resampling
     log_evidence : array (T,) or (T, B)
@@ -73,7 +73,6 @@ def run(
     rng: np.random.Generator,
     scheme: Resampler = systematic,
     threshold: float | Trigger = 0.5,
-    estimator: Callable[[Particles], Array] = mean_pose,
     watch: Callable[[int, Particles, Info], object] | None = None,
 ) -> History:
     """Run the filter along a log.
@@ -84,8 +83,6 @@ def run(
     bel : Particles, the belief before the first control
     motion, sensor, rng, scheme, threshold
         As in `step`.
-    estimator : function of a Particles
-        Turns each belief into an answer (D,) or (D, B).
     watch : function (k, bel, info), optional
         Called after each step: for progress, film, or genealogy.
 
@@ -109,7 +106,7 @@ def run(
     for k, (_, u, z, _) in enumerate(log):
         bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold, k)
         log_evidence[k], ess[k], resampled[k] = info.log_evidence, info.ess, info.resampled
-        estimate[:, k], spread[:, :, k] = estimator(bel), covariance(bel)
+        estimate[:, k], spread[:, :, k] = mean_pose(bel), covariance(bel)
         if watch is not None:
             watch(k, bel, info)
     truth = log.truth

@@ -6,7 +6,7 @@ grid over the state, keep the cells that hold particles, and join cells that tou
 at a corner. What hangs together is one hypothesis.
 
 The size of the cells is the resolution: two heaps closer than a cell or two are one. A thin
-bridge of stray particles joins what it connects; a least share per cell cuts such bridges.
+bridge of stray particles joins what it connects.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_fraction, require_positive
+from pfkit.errors import ShapeError, require_positive
 from pfkit.estimators import mean_pose
 from pfkit.particles import Particles, normalise, require_particles
 
@@ -33,7 +33,7 @@ class Clusters(NamedTuple):
     ----------
     mean : array (D, C), the mean pose of each
     mass : array (C,), the share of the weight of each
-    label : int64 array (M,), which cluster a particle belongs to; -1 for strays in thin cells
+    label : int64 array (M,), which cluster a particle belongs to; -1 where no weight is near
     """
 
     mean: Array
@@ -41,9 +41,7 @@ class Clusters(NamedTuple):
     label: NDArray[np.int64]
 
 
-def clusters(
-    bel: Particles, cell: ArrayLike = (1.0, 1.0, math.pi / 4), thin: float = 0.0
-) -> Clusters:
+def clusters(bel: Particles, cell: ArrayLike = (1.0, 1.0, math.pi / 4)) -> Clusters:
     """Find the heaps of a cloud.
 
     Parameters
@@ -52,8 +50,6 @@ def clusters(
     cell : array_like (D,), > 0
         Size of a cell: metres, metres, radians. The heading's is shrunk to a whole part of the
         circle, so that cells meet at pi.
-    thin : float in [0, 1]
-        Cells with less than this share of the weight join nothing; their particles are strays.
 
     Returns
     -------
@@ -85,14 +81,13 @@ def clusters(
     cells, home = np.unique(at, axis=1, return_inverse=True)
     home = home.reshape(-1)  # NumPy 2.0 returned (1, M) here
     share = np.bincount(home, bel.w)
-    heavy = (share > 0) & (share >= require_fraction("thin", thin))
-    names = _join([tuple(c) for c in cells.T.tolist()], heavy, turn)
+    names = _join([tuple(c) for c in cells.T.tolist()], share > 0, turn)
     return _summary(bel, names[home])
 
 
-def _join(cells: list[Cell], heavy: NDArray[np.bool_], turn: int) -> NDArray[np.int64]:
-    """Name of the connected component of each cell; -1 for cells that are not heavy."""
-    free = {c: i for i, c in enumerate(cells) if heavy[i]}
+def _join(cells: list[Cell], held: NDArray[np.bool_], turn: int) -> NDArray[np.int64]:
+    """Name of the connected component of each cell; -1 for cells that hold no weight."""
+    free = {c: i for i, c in enumerate(cells) if held[i]}
     names = np.full(len(cells), -1, dtype=np.int64)
     steps = list(product((-1, 0, 1), repeat=len(cells[0])))
     name = 0

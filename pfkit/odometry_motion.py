@@ -24,7 +24,7 @@ from pfkit.motion import draw_noise, log_noise
 Array = NDArray[np.float64]
 
 
-def odometry_control(pose0: ArrayLike, pose1: ArrayLike, reverse: bool = False) -> Array:
+def odometry_control(pose0: ArrayLike, pose1: ArrayLike) -> Array:
     r"""What the odometer saw between two of its poses: turn, drive, turn.
 
     .. math:: \delta_{rot1} = \mathrm{atan2}(\Delta y, \Delta x) - \theta_0, \quad
@@ -34,10 +34,6 @@ def odometry_control(pose0: ArrayLike, pose1: ArrayLike, reverse: bool = False) 
     Parameters
     ----------
     pose0, pose1 : array_like (3, ...), odometry poses, metres and radians
-    reverse : bool
-        Whether the robot may have driven backwards: then trans may be negative, and rot1 stays
-        within a quarter turn. The book's trans is never negative, so a robot in reverse seems
-        to make two half turns, and the model gives it the noise of two half turns.
 
     Returns
     -------
@@ -46,15 +42,12 @@ def odometry_control(pose0: ArrayLike, pose1: ArrayLike, reverse: bool = False) 
 
     Notes
     -----
-    Source: Probabilistic Robotics, Table 5.6, lines 2 to 4.
+    Source: Probabilistic Robotics, Table 5.6, lines 2 to 4. The book's trans is never negative:
+    a robot in reverse seems to make two half turns, and gets the noise of two half turns.
     """
     dx, dy, turn = between(pose0, pose1)
     trans = np.hypot(dx, dy)
     rot1 = np.where(trans > 0, np.arctan2(dy, dx), 0.0)
-    if reverse:
-        backwards = np.abs(rot1) > np.pi / 2
-        rot1 = np.where(backwards, wrap(rot1 + np.pi), rot1)
-        trans = np.where(backwards, -trans, trans)
     return np.stack((rot1, trans, wrap(turn - rot1)))
 
 

@@ -21,15 +21,13 @@ The interval treats the particles as n = ESS independent draws. After many resam
 fewer than that, and a cloud of copies shows up as the divergence it is.
 
 And the grid itself? It earns the name oracle only when halving its cells no longer moves its
-answer. `converged_grid` halves them, and rings a bell when the answer still moves.
+answer. `refinement` says, in nats too, how far halving them moved it.
 """
 
 from __future__ import annotations
 
 import heapq
 import math
-import warnings
-from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -37,21 +35,14 @@ from numpy.typing import NDArray
 
 from pfkit.errors import (
     ShapeError,
-    require_callable,
     require_count,
     require_finite,
     require_instance,
-    require_number,
-    require_shape,
 )
 from pfkit.particles import Particles, require_particles
 from pfkit.posegrid import PoseGrid
 
 Array = NDArray[np.float64]
-
-
-class GridNotConverged(UserWarning):
-    """The bell: halving the cells still moves the grid's answer."""
 
 
 class Divergence(NamedTuple):
@@ -232,58 +223,3 @@ def refinement(coarse: PoseGrid, fine: PoseGrid, bins: int = 64) -> float:
     box = equal_mass_boxes(merged, bins).ravel()
     q, p = _shares(box, coarse.p), _shares(box, merged)
     return float(_log_ratio_sum(q, p))
-
-
-def converged_grid(
-    run: Callable[[tuple[int, int, int]], PoseGrid],
-    shape: tuple[int, int, int],
-    tolerance: float = 0.02,
-    doublings: int = 2,
-    bins: int = 64,
-) -> tuple[PoseGrid, float]:
-    """Halve the cells until the answer stands still, and say so if it does not.
-
-    Parameters
-    ----------
-    run : function of a shape (n_x, n_y, n_theta) that returns the posterior on such a grid
-        Give it a generator of the same seed each time, or chance moves the answer too.
-    shape : (n_x, n_y, n_theta), where to begin
-    tolerance : float > 0, nats
-        How much halving may move the answer: well below the divergences to be told apart.
-    doublings : int
-        How often to halve at most; each one costs eight times the last, or a little more.
-    bins : int
-        Boxes of the yardstick, as in `kl_divergence`.
-
-    Returns
-    -------
-    PoseGrid, the finest computed
-    moved : float, nats that the last halving moved the answer
-
-    Warns
-    -----
-    GridNotConverged
-        If the last halving moved the answer by more than `tolerance`.
-
-    Raises
-    ------
-    ParameterError, ShapeError
-        If tolerance or shape cannot be used, or `run` returns something else than a grid.
-    """
-    require_number("tolerance", tolerance, above=0.0)
-    require_callable("run", run)
-    shape = require_shape("shape", shape)  # type: ignore[assignment]
-    grid, moved = run(shape), math.inf
-    for _ in range(require_count("doublings", doublings)):
-        shape = tuple(2 * n for n in shape)  # type: ignore[assignment]
-        coarse, grid = grid, run(shape)
-        moved = refinement(coarse, grid, bins)
-        if moved <= tolerance:
-            return grid, moved
-    warnings.warn(
-        f"halving the cells to {shape} still moved the answer by {moved:.3g} nats (> {tolerance});"
-        " start with smaller cells, or do not call this grid exact",
-        GridNotConverged,
-        stacklevel=2,
-    )
-    return grid, moved

@@ -18,19 +18,16 @@ from collections.abc import Iterable
 from dataclasses import dataclass, field
 
 import numpy as np
-from numpy.typing import ArrayLike, NDArray
+from numpy.typing import NDArray
 
 from pfkit.errors import (
     ParameterError,
     ShapeError,
     require_components,
     require_finite,
-    require_instance,
     require_number,
-    require_rng,
 )
 from pfkit.geometry import wrap
-from pfkit.odometry_motion import OdometryMotion, odometry_control
 
 Array = NDArray[np.float64]
 
@@ -153,41 +150,3 @@ class PurePursuit:
         nearest = np.argmin(miss, axis=0)
         share = np.take_along_axis(share, nearest[None], axis=0)[0]
         return s[nearest] + share * np.diff(s)[nearest]
-
-
-def odometry_along(
-    start: ArrayLike,
-    truth: ArrayLike,
-    motion: OdometryMotion | None = None,
-    rng: np.random.Generator | None = None,
-) -> Array:
-    r"""What an odometer reads along a path: turn, drive, turn per step.
-
-    .. math:: u_t = u(x_{t-1}, x_t) + \mathcal N(0, \mathrm{diag}\,\sigma^2(u))
-
-    Parameters
-    ----------
-    start : array_like (3,) or (3, B, 1), the pose before the first step
-    truth : array_like (3, T) or (3, T, B, 1)
-    motion : OdometryMotion, optional
-        Its alphas give the variances of the reading; exact readings if left out.
-    rng : numpy.random.Generator, needed with `motion`
-
-    Returns
-    -------
-    u : array (3, T) or (3, T, B, 1), for `OdometryMotion`
-
-    Raises
-    ------
-    ParameterError, ShapeError
-        If a pose does not have three finite components, or the motion model is another one.
-    """
-    truth = require_components("truth", truth, 3)
-    start = require_components("start", start, 3)
-    before = np.concatenate((start[:, None], truth[:, :-1]), axis=1)
-    u = odometry_control(before, truth)
-    if motion is None:
-        return u
-    require_instance("motion", motion, OdometryMotion)
-    require_rng(rng)
-    return u + np.sqrt(motion.variances(u)) * rng.standard_normal(u.shape)  # type: ignore[union-attr]

@@ -80,35 +80,15 @@ def _gaussian(error: Array, sigma: float) -> Array:
     return log_p
 
 
-def log_student(error: ArrayLike, sigma: float, nu: float) -> Array:
-    r"""Log density of Student's t with scale sigma and nu degrees of freedom.
+def error_density(error: Array, sigma: float, nu: float) -> Array:
+    r"""Log density of Student's t with scale sigma and nu degrees of freedom; inf: Gaussian.
 
     .. math:: -\tfrac{\nu+1}{2}\log\Big(1+\frac{e^2}{\nu\sigma^2}\Big)
               + \log\frac{\Gamma((\nu+1)/2)}{\Gamma(\nu/2)\,\sigma\sqrt{\pi\nu}}
 
-    Its tails are heavy: one wild measurement cannot veto a particle. nu = inf is Gaussian.
-
-    Parameters
-    ----------
-    error : array_like, any shape and unit
-    sigma : float, > 0, in the unit of the error
-    nu : float, > 0
-
-    Returns
-    -------
-    array of the shape of the error
-
-    Raises
-    ------
-    ParameterError
-        If sigma or nu is not positive, or an error is not a number.
+    Its tails are heavy: one wild measurement cannot veto a particle. For sensors, which have
+    checked their numbers.
     """
-    require_nu(nu)
-    return error_density(require_finite("error", error), _require_scale(sigma), nu)
-
-
-def error_density(error: Array, sigma: float, nu: float) -> Array:
-    """`log_student` without the checks, for sensors that have made them."""
     if math.isinf(nu):
         return _gaussian(error, sigma)
     scaled = error / sigma
@@ -202,48 +182,31 @@ class Sensor:
 class Position(Sensor):
     r"""A position fix, as from satellites or a camera on the ceiling: columns z_k = (x, y).
 
-    .. math:: p(z \mid x) = \frac{1}{2\pi\sqrt{|\Sigma|}}
-              \exp\big(-\tfrac12 \nu^T \Sigma^{-1} \nu\big), \qquad \nu = z - (x, y)
+    .. math:: p(z \mid x) = \mathcal N(z_x - x;\, 0, \sigma_x^2)\;
+                            \mathcal N(z_y - y;\, 0, \sigma_y^2)
 
     It reads the first two components of a state of any dimension.
 
     Parameters
     ----------
     sigma : float or array_like (2,), metres (or pixels), > 0
-        Standard deviations in x and y; or give
-    Sigma : array_like (2, 2), square metres (or pixels)
-        The full covariance, for errors that are correlated.
+        Standard deviation, the same in x and y or one for each.
 
     Raises
     ------
     ParameterError, ShapeError
-        If not exactly one of the two is given, or it is not a covariance.
-
-    Notes
-    -----
-    With Sigma = S S^T the error is whitened, e = S^-1 nu, and the exponent is minus half its
-    squared length.
+        If sigma is not one positive number or two.
     """
 
-    sigma: ArrayLike | None = None
-    Sigma: ArrayLike | None = None
+    sigma: ArrayLike
     components: ClassVar[int] = 2
     broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        if (self.sigma is None) == (self.Sigma is None):
-            raise ParameterError(
-                "Position needs either sigma (deviations) or Sigma (covariance), "
-                f"got sigma = {self.sigma!r} and Sigma = {self.Sigma!r}"
-            )
-        if self.Sigma is None:
-            sigma = require_positive("sigma", self.sigma)
-            if sigma.shape not in ((), (2,)):
-                raise ShapeError(f"sigma must be one number or two, got shape {sigma.shape}")
-            root = np.diag(np.broadcast_to(sigma, 2))
-        else:
-            root = _covariance_root(require_finite("Sigma", self.Sigma))
-        object.__setattr__(self, "_root", root)
+        sigma = require_positive("sigma", self.sigma)
+        if sigma.shape not in ((), (2,)):
+            raise ShapeError(f"sigma must be one number or two, got shape {sigma.shape}")
+        object.__setattr__(self, "_sigmas", tuple(np.broadcast_to(sigma, 2).tolist()))
 
     def expected(self, pose: Array) -> Array:
         """The position itself, as one measurement: (2, 1, ...)."""
@@ -260,26 +223,14 @@ class Position(Sensor):
         """One noisy position: (2, 1, ...)."""
         require_rng(rng)
         z = self.expected(pose)
-        return z + np.tensordot(self._root, rng.standard_normal(z.shape), axes=1)  # type: ignore[attr-defined]
+        for row, sigma in zip(z, self._sigmas, strict=True):  # type: ignore[attr-defined]
+            row += sigma * rng.standard_normal(row.shape)
+        return z
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one position (2, ...) at states (D, ...): shape (...)."""
-        (s11, _), (s21, s22) = self._root  # type: ignore[attr-defined]
-        e1 = (zk[0] - pose[0]) / s11
-        e2 = (zk[1] - pose[1] - s21 * e1) / s22
-        return -0.5 * (e1 * e1 + e2 * e2) - math.log(2 * math.pi * s11 * s22)
-
-
-def _covariance_root(Sigma: Array) -> Array:
-    """Lower triangular S with S S^T = Sigma."""
-    if Sigma.shape != (2, 2):
-        raise ShapeError(f"Sigma must have shape (2, 2), got {Sigma.shape}")
-    symmetric = np.allclose(Sigma, Sigma.T)
-    if not symmetric or np.linalg.eigvalsh(Sigma)[0] <= 0:
-        raise ParameterError(
-            f"Sigma must be symmetric with positive eigenvalues, got {Sigma.tolist()}"
-        )
-    return np.asarray(np.linalg.cholesky(Sigma), dtype=float)
+        sigma_x, sigma_y = self._sigmas  # type: ignore[attr-defined]
+        return _gaussian(zk[0] - pose[0], sigma_x) + _gaussian(zk[1] - pose[1], sigma_y)
 
 
 @dataclass(frozen=True)

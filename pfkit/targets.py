@@ -21,7 +21,6 @@ Units are those of the data: pixels and frames in the labs, metres and seconds e
 
 from __future__ import annotations
 
-import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -129,8 +128,3 @@ class CircleTarget(FixedTarget):
         moved = _ahead(state, state[2], u)
         moved[2] = wrap(moved[2] + omega * dt)
         return moved
-
-
-def turning_radius(v: float, omega: float) -> float:
-    """Radius v/omega of the circle, in the unit of v times time; infinite for omega = 0."""
-    return math.inf if omega == 0 else abs(v / omega)

@@ -44,18 +44,10 @@ SQUARE_START = np.array([0.0, 0.0, 0.0])
 SQUARE_ROUTE = np.array([[0.0, 15.0, 15.0, 0.0], [0.0, 0.0, 15.0, 15.0]])
 
 
-def square(tight: bool = False) -> LandmarkMap:
-    """Four landmarks that look the same from four sides: exact symmetry about (7.5, 7.5).
-
-    Parameters
-    ----------
-    tight : bool
-        Bounds are the landmarks' own box, 5 m wide. The copies of a start at the origin,
-        (15, 0), (15, 15) and (0, 15), lie outside it, as does the origin itself.
-    """
+def square() -> LandmarkMap:
+    """Four landmarks that look the same from four sides: exact symmetry about (7.5, 7.5)."""
     corners = np.array([[10.0, 5.0, 5.0, 10.0], [10.0, 10.0, 5.0, 5.0]])
-    bounds = (5.0, 10.0, 5.0, 10.0) if tight else (-2.5, 17.5, -2.5, 17.5)
-    return LandmarkMap(corners, bounds=bounds)
+    return LandmarkMap(corners, bounds=(-2.5, 17.5, -2.5, 17.5))
 
 
 BROKEN_SQUARE_START = np.array([13.0, 13.0, np.pi])
@@ -147,28 +139,15 @@ OFFICE_DOORS = (
 OFFICE_FURNITURE = ((5.6, 6.8, 0.2, 0.7), (0.2, 0.8, 6.0, 7.4), (9.8, 10.2, 6.4, 6.8))
 
 
-def office(resolution: float = 0.1) -> OccupancyGrid:
-    """Five rooms along a corridor, 12 m x 8 m, for a robot with a laser.
+def office() -> OccupancyGrid:
+    """Five rooms along a corridor, 12 m x 8 m in cells of 0.1 m, for a robot with a laser.
 
     `OFFICE_ROUTE` goes along the corridor and back through the three lower rooms.
-
-    Parameters
-    ----------
-    resolution : float, > 0, metres per cell
-        Walls are 0.2 m thick; larger cells would lose them.
-
-    Raises
-    ------
-    ParameterError
-        If the resolution is not in (0, 0.2].
     """
-    require_positive("resolution", resolution)
-    if resolution > 0.2:
-        raise ParameterError(f"cells of {resolution} m lose walls of 0.2 m; use at most 0.2")
-    x = resolution * (np.arange(round(12.0 / resolution)) + 0.5)
-    y = resolution * (np.arange(round(8.0 / resolution)) + 0.5)[:, None]
+    x = 0.1 * (np.arange(120) + 0.5)
+    y = 0.1 * (np.arange(80) + 0.5)[:, None]
     wall = np.zeros((y.size, x.size), dtype=bool)
     for boxes, solid in ((OFFICE_WALLS, True), (OFFICE_DOORS, False), (OFFICE_FURNITURE, True)):
         for x0, x1, y0, y1 in boxes:
             wall[(x0 < x) & (x < x1) & (y0 < y) & (y < y1)] = solid
-    return OccupancyGrid(wall, resolution)
+    return OccupancyGrid(wall, 0.1)

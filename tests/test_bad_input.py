@@ -43,7 +43,6 @@ BAD: dict[str, list[tuple[Any, str]]] = {
         ([1, 2, 1j], "1j"),
     ],
     "control": [("go", "go"), (np.zeros(5), "(5,)"), ([NAN, 0.1, 0.1], "nan"), (1.0, "()")],
-    "speeds": [("go", "go"), ([NAN, 0.1, 0.1], "nan")],
     "positive": [(0.0, "0"), (-1.0, "-1"), (NAN, "nan"), (INF, "inf"), ("wide", "wide")],
     "positive or inf": [(0.0, "0"), (-1.0, "-1"), (NAN, "nan"), ("wide", "wide")],
     "non-negative": [(-1.0, "-1"), (NAN, "nan"), ("wide", "wide")],
@@ -221,10 +220,6 @@ TABLE: dict[str, Row] = {
     "OdometryMotion": (pf.OdometryMotion, dict(alpha=((0.1,) * 4, "alpha4"))),
     "odometry_control": (pf.odometry_control, dict(pose0=pose, pose1=pose)),
     "log_gaussian": (pf.log_gaussian, dict(error=(0.1, "number"), sigma=one)),
-    "log_student": (
-        pf.log_student,
-        dict(error=(0.1, "number"), sigma=one, nu=(3.0, "positive or inf")),
-    ),
     "RangeBearing": (
         pf.RangeBearing,
         dict(
@@ -413,12 +408,8 @@ TABLE |= {
     # L3
     "map_particle": (pf.map_particle, dict(bel=bel)),
     "top_share_mean": (pf.top_share_mean, dict(bel=bel, share=half)),
-    "clusters": (
-        pf.clusters,
-        dict(bel=bel, cell=((1.0, 1.0, 1.0), "positive"), thin=(0.0, "fraction")),
-    ),
+    "clusters": (pf.clusters, dict(bel=bel, cell=((1.0, 1.0, 1.0), "positive"))),
     "kde": (pf.kde, dict(bel=bel, points=pose)),
-    "kde_mode": (pf.kde_mode, dict(bel=bel)),
     "silverman_bandwidth": (pf.silverman_bandwidth, dict(bel=bel)),
     "door_likelihood": (
         pf.door_likelihood,
@@ -459,21 +450,11 @@ TABLE |= {
         dict(bel=box, u=u, motion=motion, rng=r, draws=n),
     ),
     "update_grid": (pf.update_grid, dict(bel=box, z=z, sensor=sensor)),
-    "run_grid": (pf.run_grid, dict(log=log, bel=box, motion=motion, sensor=sensor, rng=r)),
     "kl_divergence": (pf.kl_divergence, dict(bel=bel, grid=box, bins=n)),
     "equal_mass_boxes": (pf.equal_mass_boxes, dict(p=(CELLS.p, "errors"), bins=n)),
     "refinement": (
         pf.refinement,
         dict(coarse=box, fine=(pf.uniform_grid((8, 8, 8), (0, 4, 0, 4)), "particles"), bins=n),
-    ),
-    "converged_grid": (
-        pf.converged_grid,
-        dict(
-            run=(lambda shape: pf.uniform_grid(shape, (0, 4, 0, 4)), "function"),
-            shape=((2, 2, 2), "cells"),
-            tolerance=(1.0, "positive or inf"),
-            doublings=n,
-        ),
     ),
     "Gaussian": (pf.Gaussian, dict(mean=([0.0, 0.0], "scores"), Sigma=(np.eye(2), "covariance"))),
     "kalman_predict": (
@@ -575,7 +556,6 @@ TABLE |= {
         pf.coverage,
         dict(error=(ERRORS, "errors"), Sigma=(COVARIANCES, "errors"), level=(0.9, "level")),
     ),
-    "credibility": (pf.credibility, dict(bel=bel, truth=pose)),
     "chi2_quantile": (pf.chi2_quantile, dict(p=(0.5, "probability"), k=n)),
     "chi2_tail": (pf.chi2_tail, dict(x=(1.0, "log number"), k=n)),
     "root_mean_square": (pf.root_mean_square, dict(x=([1.0, 2.0], "scores"))),
@@ -631,7 +611,6 @@ TABLE |= {
             points=(np.array(((0.0, 1, 1), (0, 0, 1))), "positions"), v=one, dt=one, lookahead=one
         ),
     ),
-    "odometry_along": (pf.odometry_along, dict(start=pose, truth=(LOG.truth, "pose"))),
     "drive": (pf.drive, dict(start=pose, u=(LOG.u, "angle"), motion=motion, rng=r)),
     "sense": (pf.sense, dict(truth=(LOG.truth, "driven"), sensor=sensor, rng=r, every=n)),
     "simulate_log": (

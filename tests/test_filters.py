@@ -301,8 +301,3 @@ def test_a_batched_truth_loses_its_last_axis():
     truth = np.repeat(LOG.truth[:, :, None, None], 2, axis=2)
     log = pf.Log(LOG.t, LOG.u, LOG.z, truth)
     assert pf.run(log, start((2, 20)), MOTION, SENSOR, rng()).truth.shape == (3, 12, 2)
-
-
-def test_another_estimator_answers():
-    history = pf.run(LOG, start(50), MOTION, SENSOR, rng(), estimator=lambda bel: bel.state[:, 0])
-    np.testing.assert_array_equal(history.estimate[:, -1], history.bel.state[:, 0])

@@ -40,7 +40,7 @@ class LinearMotion:
         )
 
 
-SIGMA_Z = np.array([[0.5, 0.1], [0.1, 0.3]])
+SIGMA_Z = np.diag((0.5, 0.3))
 U = np.array([[0.3, -0.2, 0.5, 0.1, 0.0, -0.4], [0.1, 0.2, -0.3, 0.0, 0.2, 0.1]])
 Z = np.array([[1.5, 1.2, 2.6, 2.0, 2.9, 1.6], [-0.8, 0.4, -0.9, 0.6, 0.1, 0.3]])
 PRIOR = pf.Gaussian((1.0, -1.0), [[2.0, 0.3], [0.3, 1.0]])
@@ -61,7 +61,7 @@ def kalman():
 def particle_filters(scheme, threshold):
     bel = pf.gaussian_prior((B, M), PRIOR.mean, PRIOR.Sigma, rng(1))
     log = pf.Log(np.arange(6.0), U, [z[:, None] for z in Z.T])
-    sensor = pf.Position(Sigma=SIGMA_Z)
+    sensor = pf.Position(np.sqrt(np.diag(SIGMA_Z)))
     return pf.run(log, bel, LinearMotion(), sensor, rng(2), scheme, threshold)
 
 
@@ -106,7 +106,7 @@ def test_error_falls_as_one_over_root_m():
     errors = []
     for m in (100, 1600):
         bel = pf.gaussian_prior((B, m), PRIOR.mean, PRIOR.Sigma, rng(3))
-        history = pf.run(log, bel, LinearMotion(), pf.Position(Sigma=SIGMA_Z), rng(4))
+        history = pf.run(log, bel, LinearMotion(), pf.Position(np.sqrt(np.diag(SIGMA_Z))), rng(4))
         errors.append(np.sqrt(np.mean((history.estimate[0, -1] - kalman()[0].mean[0]) ** 2)))
     assert 2.8 < errors[0] / errors[1] < 5.6
 
@@ -129,22 +129,24 @@ def small_drive():
     return pf.Log(np.arange(3.0), u, z)
 
 
-EVIDENCE = {}
-
-
 def run_grid(shape):
+    """The grid's posterior after the drive, and its total log evidence."""
     grid = pf.gaussian_grid(shape, BOUNDS, START, (0.4, 0.4, 0.3))
-    grid, log_evidence = pf.run_grid(small_drive(), grid, MOTION, SENSOR, rng(3))
-    EVIDENCE[shape] = log_evidence.sum()
-    return grid
+    generator, total = rng(3), 0.0
+    for _, u, z, _ in small_drive():
+        grid = pf.predict_by_convolution(grid, u, MOTION, generator)
+        grid, log_evidence = pf.update_grid(grid, z, SENSOR)
+        total += log_evidence
+    return grid, total
 
 
 @cache
 def oracle():
-    """The converged grid, and its log evidence extrapolated to cells of size zero."""
-    grid, moved = pf.converged_grid(run_grid, (27, 21, 27), tolerance=0.01, doublings=1)
-    coarse, fine = EVIDENCE[27, 21, 27], EVIDENCE[54, 42, 54]
-    return grid, moved, fine + (fine - coarse) / 3, abs(fine - coarse) / 3
+    """The finer grid, how far halving the cells moved it, and its log evidence extrapolated to
+    cells of size zero."""
+    (coarse, before), (grid, after) = (run_grid(shape) for shape in ((27, 21, 27), (54, 42, 54)))
+    moved = pf.refinement(coarse, grid)
+    return grid, moved, after + (after - before) / 3, abs(after - before) / 3
 
 
 @cache

@@ -58,13 +58,13 @@ def test_angles_that_straddle_pi_stay_together(transform):
 
 @BOTH
 def test_predict_and_update_equal_kalman_on_a_linear_world(transform):
-    motion, sensor = LinearMotion(), pf.Position(Sigma=[[0.5, 0.1], [0.1, 0.3]])
+    motion, sensor = LinearMotion(), pf.Position(np.sqrt((0.5, 0.3)))
     bel = exact = pf.Gaussian((1.0, -1.0), [[2.0, 0.3], [0.3, 1.0]])
     for z in ((0.7, -0.2), (1.9, 0.1)):
         bel, _ = pf.gaussian_predict(bel, (0.2, -0.1), motion, transform)
         exact = pf.kalman_predict(exact, motion.F, motion.root @ motion.root.T, (0.2, -0.1))
         bel, e, _ = pf.gaussian_update(bel, np.array(z)[:, None], sensor, transform)
-        exact, e_exact, _ = pf.kalman_update(exact, z, np.eye(2), [[0.5, 0.1], [0.1, 0.3]])
+        exact, e_exact, _ = pf.kalman_update(exact, z, np.eye(2), np.diag((0.5, 0.3)))
         assert e == pytest.approx(e_exact, rel=1e-7)
         np.testing.assert_allclose(bel.mean, exact.mean, rtol=1e-7)
         np.testing.assert_allclose(bel.Sigma, exact.Sigma, rtol=1e-7)

@@ -101,23 +101,3 @@ def test_update_is_bayes_with_full_constants():
     np.testing.assert_allclose(after.p, joint / joint.sum(), rtol=1e-9)
     for nothing in (None, np.empty((3, 0))):
         assert pf.update_grid(grid, nothing, sensor) == (grid, 0.0)
-
-
-def test_run_is_the_loop():
-    sensor = pf.Range(WORLD, 0.5)
-    u = np.tile(np.array([[0.5], [0.1], [1.0]]), 3)
-    log = pf.Log(
-        np.arange(3.0), u, [np.array([[2.9], [0]]), np.empty((2, 0)), np.array([[4], [1]])]
-    )
-    seen = []
-    last, log_evidence = pf.run_grid(
-        log, known(), NOISY, sensor, rng(4), watch=lambda k, bel, e: seen.append((k, e))
-    )
-    bel, by_hand, generator = known(), [], rng(4)
-    for _, u_k, z_k, _ in log:
-        bel = pf.predict_by_convolution(bel, u_k, NOISY, generator)
-        bel, e = pf.update_grid(bel, z_k, sensor)
-        by_hand.append(e)
-    np.testing.assert_array_equal(last.p, bel.p)
-    np.testing.assert_array_equal(log_evidence, by_hand)
-    assert seen == list(enumerate(by_hand)) and by_hand[1] == 0

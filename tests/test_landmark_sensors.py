@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
+from pfkit.sensors import error_density
 
 WORLD = pf.LandmarkMap(np.array([[0.0, 4.0, -2.0, 7.0], [3.0, -1.0, -5.0, 2.5]]), [6, 13, 17, 4])
 
@@ -60,7 +61,7 @@ def loop_log_likelihood(sensor, z, pose):
             if isinstance(sensor, pf.RangeBearing):
                 errors.append((column[0] - math.dist((x, y), (mx, my)), sensor.sigma_r))
             for error, sigma in errors:
-                total[m] += float(pf.log_student(error, sigma, sensor.nu))
+                total[m] += float(error_density(np.array(error), sigma, sensor.nu))
     return total
 
 

@@ -1,7 +1,6 @@
 """The divergence estimator on clouds drawn from known densities, and the bell."""
 
 import math
-import warnings
 
 import numpy as np
 import pytest
@@ -118,28 +117,13 @@ def test_batch_equals_single():
         assert (one.kl, one.low, one.bias) == pytest.approx((d.kl[b], d.low[b], d.bias[b]))
 
 
-def smooth(shape):
-    return pf.gaussian_grid(shape, BOUNDS, (4, 4, 0), (0.8, 0.8, 0.6))
+def test_refinement_sees_an_answer_that_moved_and_one_that_stands_still():
+    def smooth(shape, x):
+        return pf.gaussian_grid(shape, BOUNDS, (x, 4, 0), (0.8, 0.8, 0.6))
 
-
-def test_a_smooth_answer_converges_quietly():
-    with warnings.catch_warnings():
-        warnings.simplefilter("error")
-        grid, moved = pf.converged_grid(smooth, (16, 16, 16), tolerance=0.01)
-    assert grid.p.shape == (32, 32, 32)
-    assert abs(moved) <= 0.01
-
-
-def test_the_bell_rings_when_halving_moves_the_answer():
-    calls = []
-
-    def moving(shape):
-        calls.append(shape)
-        return pf.gaussian_grid(shape, BOUNDS, (2 + len(calls), 4, 0), (0.8, 0.8, 0.6))
-
-    with pytest.warns(pf.GridNotConverged, match="halving the cells to \\(32, 32, 32\\)"):
-        _, moved = pf.converged_grid(moving, (8, 8, 8), tolerance=0.01, doublings=2)
-    assert calls == [(8, 8, 8), (16, 16, 16), (32, 32, 32)]
+    coarse, fine = (16, 16, 16), (32, 32, 32)
+    assert abs(pf.refinement(smooth(coarse, 4), smooth(fine, 4))) < 0.01
+    moved = pf.refinement(smooth(coarse, 4), smooth(fine, 5))
     assert 0.5 < moved / (1 / (2 * 0.8**2)) <= 1  # KL of shifted Gaussians; boxes see a part
 
 
@@ -149,8 +133,6 @@ def test_bad_input_is_named():
         pf.kl_divergence(pf.from_weights(np.zeros((2, 5))), grid)
     with pytest.raises(pf.ShapeError, match="twice"):
         pf.refinement(grid, grid)
-    with pytest.raises(pf.ParameterError):
-        pf.converged_grid(smooth, (4, 4, 4), tolerance=0.0)
     with pytest.raises(pf.ParameterError):
         pf.equal_mass_boxes(grid.p, 0)
 

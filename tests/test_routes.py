@@ -57,16 +57,6 @@ def test_pure_pursuit_of_a_batch_is_that_of_its_robots():
         np.testing.assert_allclose(together[:, b, 0], driver(0, poses[:, b, 0]))
 
 
-def test_odometry_along_a_path_leads_back_along_it():
-    _, truth = pf.drive(START, TURN, NOISY, rng())
-    u = pf.odometry_along(START, truth)
-    log = pf.simulate_log(START, u, pf.OdometryMotion((0.0,) * 4), SENSOR, rng())
-    np.testing.assert_allclose(log.truth, truth, atol=1e-12)
-    np.testing.assert_allclose(log.t, np.arange(1, 31))
-    noisy = pf.odometry_along(START, truth, pf.OdometryMotion(), rng())
-    assert not np.allclose(noisy, u)
-
-
 def test_bad_parts_are_named():
     with pytest.raises(pf.ParameterError, match="way-points"):
         pf.PurePursuit([[0, 0, 1], [0, 0, 1]], 1, 0.1)
@@ -76,5 +66,3 @@ def test_bad_parts_are_named():
         pf.commands([(1, 0, -1)], 0.1)
     with pytest.raises(pf.ShapeError, match="command"):
         pf.commands([(1, 0)], 0.1)
-    with pytest.raises(pf.ParameterError, match="rng"):
-        pf.odometry_along(START, START[:, None], pf.OdometryMotion())

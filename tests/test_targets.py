@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.targets import CircleTarget, FixedTarget, HeadingTarget, LineTarget, turning_radius
+from pfkit.targets import CircleTarget, FixedTarget, HeadingTarget, LineTarget
 
 U = (2.0, 0.1, 1.5)
 MODELS = [
@@ -58,8 +58,7 @@ def test_the_circle_closes_and_has_its_radius():
     radii = np.hypot(*(xy - xy.mean(0)).T)
     # a polygon of n sides of length v: its corners lie at v / (2 sin(omega / 2))
     np.testing.assert_allclose(radii, v / (2 * math.sin(omega / 2)), rtol=1e-9)
-    assert turning_radius(v, omega) == pytest.approx(radii[0], rel=1e-4)
-    assert turning_radius(1.0, 0.0) == math.inf
+    assert radii[0] == pytest.approx(v / omega, rel=1e-4)
 
 
 @pytest.mark.parametrize(("model", "D"), MODELS)
