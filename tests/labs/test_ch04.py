@@ -8,6 +8,7 @@ import pytest
 
 import pfkit as pf
 from pfkit.labs import Experiment, ch04, replay
+from pfkit.labs.ch04.score import readings
 
 ROOT = Path(__file__).parents[2]
 LAB = ch04.LAB
@@ -36,7 +37,7 @@ def test_a_right_experiment_rarely_fails(item):
 
 
 def test_the_reference_score_is_the_range_bearing_sensor():
-    z, m, pose, sigma_r, sigma_phi = ch04._case(9)
+    z, m, pose, sigma_r, sigma_phi = readings(9)
     world = pf.LandmarkMap(m)
     sensor = pf.RangeBearing(world, sigma_r, sigma_phi)
     ours = LAB.items["score"].reference(z, m, pose, sigma_r, sigma_phi)
