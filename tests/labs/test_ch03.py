@@ -8,6 +8,7 @@ import pytest
 
 import pfkit as pf
 from pfkit.labs import Experiment, ch03, replay
+from pfkit.labs.ch03 import arcs, experiments
 
 ROOT = Path(__file__).parents[2]
 LAB = ch03.LAB
@@ -56,8 +57,8 @@ def test_a_careful_threshold_is_as_good_as_sinc():
 
     def arc(pose, v, omega, dt):
         slow = np.abs(omega) < 1e-6
-        curved = ch03._naive(pose, v, np.where(slow, 1.0, omega), dt)
-        found = np.where(slow, ch03._along(0.5)(pose, v, omega, dt), curved)
+        curved = arcs.naive(pose, v, np.where(slow, 1.0, omega), dt)
+        found = np.where(slow, arcs.along(0.5, arcs.full)(pose, v, omega, dt), curved)
         found[2] = pf.wrap(pose[2] + omega * dt)
         return found
 
@@ -69,8 +70,8 @@ def test_published_solutions_pass():
     scope = {
         "np": np,
         "pf": pf,
-        "motion": pf.VelocityMotion(ch03.ALPHA),
-        "u": np.array(ch03.U),
+        "motion": pf.VelocityMotion(experiments.ALPHA),
+        "u": np.array(experiments.U),
     }
     book = json.loads((ROOT / "notebooks" / "03_motion.ipynb").read_text(encoding="utf-8"))
     sources = ["".join(c["source"]) for c in book["cells"]]
