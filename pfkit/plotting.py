@@ -10,9 +10,8 @@
 | exact posterior | purple | shaded cells or a filled curve |
 | measurements | amber | thin lines or ticks |
 
-The colours are those of Okabe and Ito, told apart by colour-blind readers and, with the line
-styles, in grey. Every function draws into the `ax` it is given, returns what it drew, and
-never calls `show`.
+The colours come from `pfkit.palette`, which the explorables use as well. Every function draws into
+the `ax` it is given, returns what it drew, and never calls `show`.
 """
 
 from __future__ import annotations
@@ -27,10 +26,15 @@ from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.maps import LandmarkMap
+from pfkit.palette import COLOURS
 from pfkit.particles import Particles
 
-TRUTH, ESTIMATE, DEAD_RECKONING = "#000000", "#0072B2", "#D55E00"
-PARTICLES, LANDMARKS, EXACT, MEASUREMENT = "#6b6b6b", "#009E73", "#9467BD", "#B87800"
+TRUTH, ESTIMATE, DEAD_RECKONING, PARTICLES, LANDMARKS, EXACT, MEASUREMENT = (
+    COLOURS[name][0]
+    for name in ("truth", "estimate", "dead reckoning", "particles", "landmarks", "exact",
+                 "measurement")
+)  # fmt: skip
+INK = COLOURS["ink"][0]  # for words: green letters on white are hard to read
 
 KINDS: dict[str, dict[str, Any]] = {
     "truth": {"color": TRUTH, "ls": "-", "marker": ">"},
@@ -101,9 +105,7 @@ def draw_world(ax: Axes, world: LandmarkMap, ids: bool = True) -> Any:
     )
     if ids:
         for name, (x, y) in zip(world.ids, world.positions.T, strict=True):
-            ax.annotate(
-                str(name), (x, y), (5, 5), textcoords="offset points", color=LANDMARKS, size=8
-            )
+            ax.annotate(str(name), (x, y), (5, 5), textcoords="offset points", color=INK, size=8)
     margin = 0.04 * max(x1 - x0, y1 - y0)
     ax.set(xlim=(x0 - margin, x1 + margin), ylim=(y0 - margin, y1 + margin), aspect="equal")
     return artist

@@ -20,6 +20,7 @@ import os
 from importlib.resources import files
 from typing import Any
 
+from pfkit import palette
 from pfkit.explore import scene
 from pfkit.explore.host import Host
 
@@ -109,7 +110,8 @@ def _front_end() -> tuple[str, str]:
     """Script and style of the widget: the page's own files, and the glue to the kernel."""
     web = files("pfkit.explore") / "web"
     scripts = [(web / name).read_text(encoding="utf-8") for name in ("render.js", "explorable.js")]
-    return "\n".join([*scripts, GLUE]), (web / "explorable.css").read_text(encoding="utf-8")
+    style = (web / "explorable.css").read_text(encoding="utf-8")
+    return "\n".join([palette.script(), *scripts, GLUE]), style
 
 
 def _widget_class() -> Any:

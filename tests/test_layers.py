@@ -65,6 +65,7 @@ LAYERS: dict[str, list[str]] = {
 }
 # The edge stands above the whole core. A package counts as one module here.
 EDGE: dict[str, set[str]] = {
+    "palette": set(),
     "plotting": {"matplotlib"},
     "explore": set(),
     "labs": set(),
@@ -74,7 +75,13 @@ EDGE: dict[str, set[str]] = {
     "__main__": {"matplotlib"},
 }
 # Parts of the edge that another part may build on.
-EDGE_USES = {"labs": {"explore"}, "widgets": {"explore"}, "__main__": {"plotting"}}
+EDGE_USES = {
+    "plotting": {"palette"},
+    "explore": {"palette"},
+    "labs": {"explore"},
+    "widgets": {"explore", "palette"},
+    "__main__": {"plotting"},
+}
 OPTIONAL_FRONT_ENDS = {"labs": {"ipywidgets", "IPython"}}  # inside a function, behind a fallback
 ORDER = {name: i for i, name in enumerate(m for layer in LAYERS.values() for m in layer)}
 

@@ -54,7 +54,7 @@ logger = logging.getLogger(__name__)
 ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
-SCRIPTS = ("render.js", "explorable.js", "page.js")
+SCRIPTS = ("palette.js", "render.js", "explorable.js", "page.js")
 LAB_IMPORT = re.compile(r"^\s*from\s+pfkit\.labs\s+import\s+(\w+)(?:\s+as\s+(\w+))?", re.M)
 
 
@@ -247,10 +247,10 @@ def make_run(key: str, name: str, panel: str, seed: int, folder: Path) -> None:
 
 
 def package_hash() -> str:
-    """Hash of all of pfkit's modules: recordings are made anew when one changes."""
+    """Hash of pfkit's modules and data: recordings are made anew when one changes."""
     folder = Path(pfkit.__file__).parent
     digest = hashlib.sha256()
-    for path in sorted(folder.rglob("*.py")):
+    for path in sorted(p for p in folder.rglob("*") if p.suffix in (".py", ".json")):
         digest.update(path.relative_to(folder).as_posix().encode() + path.read_bytes())
     return digest.hexdigest()[:16]
 

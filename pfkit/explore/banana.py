@@ -220,11 +220,11 @@ class Banana(Scene):
         for step in range(0, self.now, 8):
             pen.points("grid", *self.mine[step, :2], size=2)
         x, y, _ = self.theirs[self.now]
-        pen.points("wall", x, y, size=5)
-        pen.quills("particle", *self.mine[self.now], length=8, size=4)
+        pen.points("particles", x, y, size=5)
+        pen.quills("estimate", *self.mine[self.now], length=8, size=4)
         pen.robots("truth", *self.mean[self.now], radius=0.14)
         left, top = span[0] + 0.1, span[3] - 0.2
-        pen.points("wall", left, top, size=6)
+        pen.points("particles", left, top, size=6)
         pen.text("ink", left + 0.15, top, "hidden robot", size=12)
-        pen.points("particle", left, top - 0.4, size=6)
+        pen.points("estimate", left, top - 0.4, size=6)
         pen.text("ink", left + 0.15, top - 0.4, "yours, with headings", size=12)

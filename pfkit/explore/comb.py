@@ -21,7 +21,7 @@ from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
 from pfkit.resampling import SCHEMES
 
 LETTERS = "12345"
-COLOURS = ("c1", "c2", "c3", "c4", "c5")
+COLOURS = tuple(f"particle {k}" for k in LETTERS)
 WEIGHTS = {
     "chapter": (0.40, 0.25, 0.15, 0.12, 0.08),
     "halves": (0.5, 0.5, 0.0, 0.0, 0.0),
@@ -241,7 +241,7 @@ class Comb(Scene):
         pen.view((0.69, bottom, 0.29, 0.085), (0, 1), (0, 1), frame=False)
         value = self.variance(name)
         pen.bars("grid", 0, 0.72, 0.1, 0.5, alpha=0.6)
-        pen.bars("accent", 0, 0.72 * min(value / (1.4 * reference), 1.0), 0.1, 0.5)
+        pen.bars("estimate", 0, 0.72 * min(value / (1.4 * reference), 1.0), 0.1, 0.5)
         mark = 0.72 / 1.4
         pen.segments("ink", mark, 0.02, mark, 0.6, width=1.5)
         pen.text("ink", 0.75, 0.3, f"{value:.3f}", size=12)
@@ -254,7 +254,7 @@ class Comb(Scene):
         for column in range(len(recent) - 1, -1, -1):
             parents = recent[column]
             child = np.arange(FAMILY)
-            for keep, style, width in ((~alive, "grid", 1.0), (alive, "accent", 1.6)):
+            for keep, style, width in ((~alive, "grid", 1.0), (alive, "estimate", 1.6)):
                 pen.segments(style, column, parents[keep], column + 1, child[keep], width=width)
             before = np.zeros(FAMILY, bool)
             before[parents[alive]] = True

@@ -34,6 +34,7 @@ class Corridor(Scene):
     still_at = 13
     units: ClassVar[dict[str, str]] = {
         "belief there": "%",
+        "its belief": "%",
         "entropy": "bit",
         "evidence": "p(z)",
     }
@@ -195,9 +196,11 @@ class Corridor(Scene):
     def readouts(self) -> Readouts:
         best = int(self.bel.argmax())
         return {
+            "looks": float(self.looks),
             "robot in": f"cell {self.robot}",
-            "most likely": f"cell {best}",
             "belief there": float(100 * self.bel[self.robot]),
+            "most likely": f"cell {best}",
+            "its belief": float(100 * self.bel[best]),
             "entropy": self._entropy(),
             "saw": self._seen(),
             "evidence": self.evidence,
@@ -216,7 +219,7 @@ class Corridor(Scene):
         doors = cells[self.is_door]
         if doors.size:
             pen.bars("paper", doors - 0.42, doors + 0.42, 0.15, 0.8)
-            pen.bars("landmark", doors - 0.36, doors + 0.36, 0.15, 0.72, alpha=0.85)
+            pen.bars("landmarks", doors - 0.36, doors + 0.36, 0.15, 0.72, alpha=0.85)
             pen.symbols("paper", "circle", doors + 0.18, np.full(doors.shape, 0.42), size=5)
         pen.segments("wall", -0.5, 0.15, CELLS - 0.5, 0.15, width=2)
         pen.robots("truth", self.robot, 0.3, 0.0, radius=0.42)
@@ -224,16 +227,16 @@ class Corridor(Scene):
             word = "door!" if self.saw else "wall"
             pen.text("ink", self.robot, 0.93, word, size=13, anchor=0)
         rows = (
-            ("belief before the look", self.predicted, "muted", self.phase == "move"),
-            ("p(z | cell)", self.likelihood, "proposal", self.phase == "look"),
-            ("belief now", self.bel, "particle", True),
+            ("belief before the look", self.predicted, "exact", self.phase == "move"),
+            ("p(z | cell)", self.likelihood, "measurement", self.phase == "look"),
+            ("belief now", self.bel, "exact", True),
         )
         for row, (label, values, style, fresh) in enumerate(rows):
             top = 1.0 if row == 1 else max(0.12, float(np.max(values)) * 1.1)
             pen.view((0.02, 0.515 - row * 0.245, 0.96, 0.17), x, (0, top), frame=False)
-            pen.bars(style, cells - 0.42, cells + 0.42, 0, values, alpha=0.95 if fresh else 0.45)
+            pen.bars(style, cells - 0.42, cells + 0.42, 0, values)
             pen.segments("grid", -0.5, 0, CELLS - 0.5, 0, width=1)
-            pen.text("ink", -0.45, top * 1.13, label, size=12)
+            pen.text("ink" if fresh else "muted", -0.45, top * 1.13, label, size=12)
             if row != 1:
                 pen.segments(
                     "truth", self.robot, 0, self.robot, float(values[self.robot]), width=2.5

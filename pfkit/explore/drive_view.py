@@ -21,10 +21,10 @@ def draw_drive(s: Drive, pen: Pen) -> None:
     pen.view((0.01, 0.02, 0.98 if alone else 0.735, 0.96), (x0, x1), (y0, y1), equal=True)
     if alone:
         _, p = s.likelihood_map()
-        pen.image("particle", np.sqrt(p / p.max()), (x0, x1), (y0, y1))
+        pen.image("exact", np.sqrt(p / p.max()), (x0, x1), (y0, y1))
     else:
         trail = np.array(s.trail)
-        pen.line("truth", trail[:, 0], trail[:, 1], width=1.5, dash=4)
+        pen.line("truth", trail[:, 0], trail[:, 1], width=1.5)
         draw_cloud(s, pen)
     _landmarks(s, pen)
     if s.z_age < FADE and s.z.size and not alone:
@@ -43,22 +43,25 @@ def draw_drive(s: Drive, pen: Pen) -> None:
 def draw_cloud(s: Drive, pen: Pen) -> None:
     x, y, theta = s.bel.state
     if s.bel.M <= 1500:
-        pen.quills("particle", x, y, theta, length=6, size=3)
+        pen.quills("particles", x, y, theta, length=6, size=3)
     else:
-        pen.points("particle", x, y, size=2)
+        pen.points("particles", x, y, size=2)
     if s.ess < 0.25 * s.bel.M:  # say which particles carry the weight
         heavy = np.argsort(s.bel.log_w)[-40:]
         size = 4 + 16 * np.sqrt(np.exp(s.bel.log_w[heavy] - s.bel.log_w[heavy[-1]]))
-        pen.bubbles("accent", x[heavy], y[heavy], size)
+        pen.bubbles("particles", x[heavy], y[heavy], size)
 
 
 def _landmarks(s: Drive, pen: Pen) -> None:
     mx, my = s.landmarks
-    pen.symbols("landmark", "diamond", mx, my, size=17)
+    chosen = s.values["hand"] == "landmark"
+    beside = 0.45 if chosen else 0.25  # metres; outside the ring of the selected one
+    pen.symbols("landmarks", "diamond", mx, my, size=17)
     for i in range(mx.size):
-        pen.text("paper", mx[i], my[i], "" if s.anonymous else str(i + 1), size=10, anchor=0)
-    if s.values["hand"] == "landmark":
-        pen.ellipses("landmark", mx[s.selected], my[s.selected], 0.42, 0.42, width=2, dash=3)
+        if not s.anonymous:
+            pen.text("ink", mx[i] + beside, my[i] + beside, str(i + 1), size=11)
+    if chosen:
+        pen.ellipses("landmarks", mx[s.selected], my[s.selected], 0.42, 0.42, width=2, dash=3)
 
 
 def _beams(s: Drive, pen: Pen) -> None:
@@ -74,22 +77,33 @@ def _beams(s: Drive, pen: Pen) -> None:
     elif s.values["sense"] == "bearing":
         phi = s.z[0]
     ends = x + r * np.cos(theta + phi), y + r * np.sin(theta + phi)
-    for bad, style in ((False, "ray"), (True, "bad")):
-        keep = s.false == bad
-        if keep.any():
-            pen.segments(style, x, y, ends[0][keep], ends[1][keep], width=width)
-            shape = "cross" if bad else "circle"
-            pen.symbols(style, shape, ends[0][keep], ends[1][keep], size=9 if bad else 6)
+    draw_readings(s, pen, *ends, width)
+
+
+def draw_readings(s: Drive, pen: Pen, x: np.ndarray, y: np.ndarray, width: float) -> None:
+    """Beams from the robot to (x, y): honest ones solid, false ones dashed and crossed out."""
+    x0, y0, _ = s.truth
+    honest, false = ~s.false, s.false
+    if honest.any():
+        pen.segments("measurement", x0, y0, x[honest], y[honest], width=width)
+        pen.symbols("measurement", "circle", x[honest], y[honest], size=6)
+    if false.any():
+        ends = np.stack((x[false], y[false]))
+        starts = np.broadcast_to([[x0], [y0]], ends.shape)
+        gaps = np.full(ends.shape, np.nan)
+        xs, ys = np.stack((starts, ends, gaps), axis=-1).reshape(2, -1)
+        pen.line("false reading", xs, ys, width=width, dash=5)
+        pen.symbols("false reading", "cross", x[false], y[false], size=9)
 
 
 def draw_estimate(s: Drive, pen: Pen) -> None:
-    x, y, _ = s.estimate
+    x, y, theta = s.estimate
     (a, c), (_, b) = s.Sigma[0, :2], s.Sigma[1, :2]
     middle, half = (a + b) / 2, np.hypot((a - b) / 2, c)
     big, small = np.sqrt(middle + half), np.sqrt(max(middle - half, 0.0))
     angle = 0.5 * np.arctan2(2 * c, a - b)
-    pen.ellipses("estimate", x, y, 2 * big, 2 * small, angle, width=2, dash=5)
-    pen.symbols("estimate", "plus", x, y, size=14)
+    pen.ellipses("estimate", x, y, 2 * big, 2 * small, angle, width=2)
+    pen.robots("estimate", x, y, theta, radius=0.14)
 
 
 def draw_charts(s: Drive, pen: Pen, landmarks: bool = True) -> None:
@@ -97,22 +111,22 @@ def draw_charts(s: Drive, pen: Pen, landmarks: bool = True) -> None:
     left, width = 0.765, 0.225
     pen.view((left, 0.74, width, 0.24), (0, 1), (0, 4), frame=False)
     pen.robots("truth", 0.06, 3.5, 0.0, radius=0.001)
-    pen.text("ink", 0.14, 3.5, "robot", size=11)
-    pen.symbols("estimate", "plus", 0.06, 2.6, size=12)
-    pen.text("ink", 0.14, 2.6, "mean, 2σ", size=11)
-    pen.points("particle", np.array([0.03, 0.06, 0.09]), np.array([1.6, 1.85, 1.6]), size=4)
-    pen.text("ink", 0.14, 1.7, f"{s.bel.M} particles", size=11)
+    pen.text("ink", 0.18, 3.5, "robot", size=11)
+    pen.robots("estimate", 0.05, 2.6, 0.0, radius=0.001)
+    pen.text("ink", 0.18, 2.6, "mean, 2σ", size=11)
+    pen.points("particles", np.array([0.03, 0.06, 0.09]), np.array([1.6, 1.85, 1.6]), size=4)
+    pen.text("ink", 0.18, 1.7, f"M = {s.bel.M}", size=11)
     if landmarks:
-        pen.symbols("landmark", "diamond", 0.06, 0.8, size=13)
-        pen.text("ink", 0.14, 0.8, "landmark", size=11)
+        pen.symbols("landmarks", "diamond", 0.06, 0.8, size=13)
+        pen.text("ink", 0.18, 0.8, "landmark", size=11)
     if not s.history:
         return
     share, error = np.array(s.history).T
     at = np.arange(160 - share.size, 160)
     pen.view((left, 0.40, width, 0.24), (0, 159), (0, 1))
     pen.line("muted", [0, 159], [s.values["threshold"]] * 2, width=1, dash=3)
-    pen.area("accent", [at[0], *at, at[-1]], [0, *share, 0], alpha=0.18)
-    pen.line("accent", at, share, width=2)
+    pen.area("particles", [at[0], *at, at[-1]], [0, *share, 0], alpha=0.18)
+    pen.line("particles", at, share, width=2)
     pen.text("ink", 0, 1.13, "ESS / M, of 1", size=11)
     top = 1.0 if error.max() < 1 else 2.0 if error.max() < 2 else 5.0 if error.max() < 5 else 12.0
     pen.view((left, 0.04, width, 0.24), (0, 159), (0, top))

@@ -93,5 +93,5 @@ class Exact(Drive):
         x0, x1, y0, y1 = self.bounds
         pen.view((0.01, 0.02, 0.735, 0.96), (x0, x1), (y0, y1), equal=True)
         p = self.grid.p.sum(axis=2).T
-        pen.image("accent", 0.75 * np.sqrt(p / p.max()), (x0, x1), (y0, y1))
+        pen.image("exact", 0.75 * np.sqrt(p / p.max()), (x0, x1), (y0, y1))
         draw_drive(self, pen)

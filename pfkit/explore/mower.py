@@ -200,18 +200,18 @@ class Mower(Scene):
 
     # ---- drawing ----------------------------------------------------------------------------
     def draw(self, pen: Pen) -> None:
-        x0, x1, y0, y1 = BOUNDS
-        pen.view((0.01, 0.02, 0.60, 0.96), (x0, x1), (y0, y1), equal=True)
+        x0, x1, y0, y1 = BOUNDS  # of the lawn; a beacon stands just below it
+        pen.view((0.01, 0.02, 0.60, 0.96), (x0, x1), (y0 - 7, y1), equal=True)
         behind = slice(max(self.first, self.k - 160), max(self.k, 1), 4)
-        pen.line("accent", *recorded()["blind"][:2, behind], width=1.2, dash=2)
+        pen.line("dead reckoning", *recorded()["blind"][:2, behind], width=1.2, dash=2)
         pen.line("truth", *self.log.truth[:2, behind], width=1.5)
         shown = slice(None, None, max(self.bel.M // 300, 1))
-        pen.points("particle", *self.bel.state[:2, shown], size=2)
+        pen.points("particles", *self.bel.state[:2, shown], size=2)
         mx, my = self.log.world.positions
         if self.heard is not None:
             s, r = self.heard
-            pen.ellipses("ray", mx[s], my[s], max(r, 0.1), max(r, 0.1), width=1.2)
-        pen.symbols("landmark", "diamond", mx, my, size=15)
+            pen.ellipses("measurement", mx[s], my[s], max(r, 0.1), max(r, 0.1), width=1.2)
+        pen.symbols("landmarks", "diamond", mx, my, size=15)
         pen.robots("truth", *self.truth, radius=2.0)
         pen.robots("estimate", *self.mean, radius=1.6)
         self._draw_chart(pen)
@@ -222,10 +222,10 @@ class Mower(Scene):
         at = begin + 4 * np.arange(len(error))
         top = max(6.0, float(np.ceil(max(error.max(), spread.max()))))
         pen.view((0.67, 0.12, 0.31, 0.62), (at[0], at[0] + WINDOW), (0, top))
-        pen.line("accent", at, error, width=2)
-        pen.line("estimate", at, spread, width=2, dash=5)
+        pen.line("estimate", at, error, width=2)
+        pen.line("particles", at, spread, width=2, dash=5)
         pen.ticks(1, [0, top / 2, top])
         pen.view((0.67, 0.78, 0.31, 0.2), (0, 1), (0, 1), frame=False)
-        pen.text("ink", 0, 0.75, "error [m]: solid", size=12)
-        pen.text("ink", 0, 0.4, "spread of the cloud [m]: dashed", size=12)
-        pen.text("muted", 0, 0.05, "last 200 recorded ranges", size=11)
+        pen.text("ink", 0, 0.75, "error: solid", size=11)
+        pen.text("ink", 0, 0.4, "spread: dashed", size=11)
+        pen.text("muted", 0, 0.05, f"m, {WINDOW} ranges", size=11)

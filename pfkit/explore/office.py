@@ -14,7 +14,7 @@ import numpy as np
 import pfkit as pf
 from pfkit.explore.drive import ALPHA, Drive
 from pfkit.explore.drive_panels import CONTROLS, HANDS
-from pfkit.explore.drive_view import draw_charts, draw_cloud, draw_estimate
+from pfkit.explore.drive_view import draw_charts, draw_cloud, draw_estimate, draw_readings
 from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Control, Mission, Panel
 from pfkit.worlds import OFFICE_DOORS, OFFICE_FURNITURE, OFFICE_ROUTE, OFFICE_WALLS
@@ -165,17 +165,12 @@ class Office(Drive):
             left, right, low, high = np.array(boxes).T
             pen.bars(style, left, right, low, high)
         trail = np.array(self.trail)
-        pen.line("truth", trail[:, 0], trail[:, 1], width=1.5, dash=4)
+        pen.line("truth", trail[:, 0], trail[:, 1], width=1.5)
         draw_cloud(self, pen)
         if self.z_age < 10 and self.z.size:
             x, y, theta = self.truth
             ends = self.z[0] * np.exp(1j * (theta + self.z[1])) + x + 1j * y
-            for bad, style in ((False, "ray"), (True, "bad")):
-                keep = self.false == bad
-                if keep.any():
-                    pen.segments(style, x, y, ends.real[keep], ends.imag[keep], width=1.5)
-                    shape = "cross" if bad else "circle"
-                    pen.symbols(style, shape, ends.real[keep], ends.imag[keep], size=7)
+            draw_readings(self, pen, ends.real, ends.imag, width=1.5)
         pen.robots("truth", *self.truth, radius=BODY)
         draw_estimate(self, pen)
         draw_charts(self, pen, landmarks=False)

@@ -4,9 +4,10 @@ A drawing is a sequence of records, each
 
     op, style, n, then n numbers
 
-all in one float32 array. `op` says what is drawn, `style` is an index into `STYLES` (the renderer
-gives each name its colour, in a light and a dark theme). Arrays inside a record are components
-first: all x, then all y. Coordinates are data units of the last `view`; sizes are pixels.
+all in one float32 array. `op` says what is drawn, `style` is an index into `STYLES`, the names of
+`pfkit.palette`, which gives each its colour in a light and a dark theme. Arrays inside a record are
+components first: all x, then all y. Coordinates are data units of the last `view`, and sizes are
+pixels. A view with equal scales is a map: what leaves it is cut off.
 
 ====  ==========  ==================================================================================
  op   name        numbers
@@ -18,7 +19,8 @@ first: all x, then all y. Coordinates are data units of the last `view`; sizes a
   5   line        width, dash, x.., y..            (NaN breaks the line)
   6   area        alpha, x.., y..
   7   bars        alpha, x0.., x1.., y0.., y1..
-  8   robots      radius, x.., y.., theta..        (radius in data units; a nose shows the heading)
+  8   robots      radius, open, x.., y.., theta.. (radius in data units; open 0: a filled
+                  arrowhead, 1: an empty circle with a nose)
   9   ellipses    width, dash, x.., y.., a.., b.., angle..       (half axes in data units)
  10   stems       base, size, x.., y..
  11   image       nx, ny, x0, x1, y0, y1, cells..  (row by row from y0; 0 clear, 1 full colour)
@@ -34,28 +36,9 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-STYLES = (
-    "ink",
-    "muted",
-    "grid",
-    "particle",
-    "truth",
-    "estimate",
-    "landmark",
-    "ray",
-    "accent",
-    "good",
-    "bad",
-    "target",
-    "proposal",
-    "wall",
-    "c1",
-    "c2",
-    "c3",
-    "c4",
-    "c5",
-    "paper",
-)
+from pfkit.palette import COLOURS
+
+STYLES = tuple(COLOURS)
 SHAPES = ("circle", "square", "diamond", "cross", "triangle", "plus", "star")
 OPS = (
     "view",
@@ -130,7 +113,8 @@ class Pen:
     def robots(
         self, style: str, x: ArrayLike, y: ArrayLike, theta: ArrayLike, radius: float = 0.25
     ) -> None:
-        self._add("robots", style, radius, *np.broadcast_arrays(x, y, theta))
+        """Poses, in the shapes of `pfkit.plotting.draw_pose`: filled if true, empty if guessed."""
+        self._add("robots", style, radius, style != "truth", *np.broadcast_arrays(x, y, theta))
 
     def ellipses(
         self,

@@ -11,29 +11,9 @@ from html import escape
 import numpy as np
 
 from pfkit.explore.pen import SHAPES, records
+from pfkit.palette import COLOURS
 
-COLOURS = {
-    "ink": "#1d2733",
-    "muted": "#5b6775",
-    "grid": "#cfd6de",
-    "particle": "#2f6fbf",
-    "truth": "#15803d",
-    "estimate": "#c2410c",
-    "landmark": "#6d28d9",
-    "ray": "#b7791f",
-    "accent": "#2563a8",
-    "good": "#15803d",
-    "bad": "#b91c1c",
-    "target": "#15803d",
-    "proposal": "#b45309",
-    "wall": "#64717f",
-    "c1": "#2563a8",
-    "c2": "#b45309",
-    "c3": "#15803d",
-    "c4": "#9d3a8f",
-    "c5": "#64717f",
-    "paper": "#fbfcfd",
-}
+LIGHT = {name: light for name, (light, _) in COLOURS.items()}
 MOST = 600  # points of one cloud that a still keeps
 
 
@@ -43,6 +23,7 @@ class Still:
     def __init__(self, size: tuple[int, int]):
         self.width, self.height = size
         self.out: list[str] = []
+        self.open = False
         self.view(np.array([0, 0, 1, 1, 0, 1, 0, 1, 0, 0], float), "paper")
 
     def view(self, d: np.ndarray, colour: str) -> None:
@@ -56,12 +37,25 @@ class Still:
             bottom -= (height - s * (y1 - y0)) / 2
             sx = sy = s
         self.left, self.bottom, self.x0, self.y0, self.sx, self.sy = left, bottom, x0, y0, sx, sy
+        w, h = sx * (x1 - x0), sy * (y1 - y0)
+        self.close()
+        if equal:  # a map is cut at its edge; charts may write beside themselves
+            self.out.append(
+                f'<clipPath id="cut"><rect x="{left - 1:.1f}" y="{bottom - h - 1:.1f}" '
+                f'width="{w + 2:.1f}" height="{h + 2:.1f}"/></clipPath><g clip-path="url(#cut)">'
+            )
+            self.open = True
         if box:
-            w, h = sx * (x1 - x0), sy * (y1 - y0)
             self.out.append(
                 f'<rect x="{left:.1f}" y="{bottom - h:.1f}" width="{w:.1f}" height="{h:.1f}" '
-                f'fill="none" stroke="{COLOURS["grid"]}"/>'
+                f'fill="none" stroke="{LIGHT["grid"]}"/>'
             )
+
+    def close(self) -> None:
+        """End the group that is cut at the edge of the last view."""
+        if self.open:
+            self.out.append("</g>")
+        self.open = False
 
     def _rows(self, d: np.ndarray, lead: int, rows: int, most: int | None = None) -> np.ndarray:
         table = np.asarray(d[lead:], float).reshape(rows, -1)
@@ -129,14 +123,19 @@ class Still:
             )
 
     def robots(self, d: np.ndarray, colour: str) -> None:
-        r = max(float(d[0]) * self.sx, 5)
-        for x, y, theta in self._rows(d, 1, 3).T:
-            nose = f"M{1.5 * r:.1f} 0L{-0.35 * r:.1f} {0.62 * r:.1f}L{-0.05 * r:.1f} 0"
-            nose += f"L{-0.35 * r:.1f} {-0.62 * r:.1f}Z"
+        r, hollow = max(float(d[0]) * self.sx, 5), bool(d[1])
+        shape = (
+            f'<circle r="{r:.1f}" fill="{LIGHT["paper"]}"/><path d="M0 0H{1.7 * r:.1f}"/>'
+            if hollow
+            else f'<path fill="{colour}" d="M{1.5 * r:.1f} 0L{-r:.1f} {0.85 * r:.1f}'
+            f'V{-0.85 * r:.1f}Z"/>'
+        )
+        edge, width = (colour, 2) if hollow else (LIGHT["paper"], 1)
+        for x, y, theta in self._rows(d, 2, 3).T:
             self.out.append(
                 f'<g transform="translate({self.X(x):.1f} {self.Y(y):.1f}) '
-                f'rotate({-np.degrees(theta):.1f})"><circle r="{r:.1f}" fill="{COLOURS["paper"]}" '
-                f'stroke="{colour}" stroke-width="2"/><path d="{nose}" fill="{colour}"/></g>'
+                f'rotate({-np.degrees(theta):.1f})" stroke="{edge}" stroke-width="{width}">'
+                f"{shape}</g>"
             )
 
     def ellipses(self, d: np.ndarray, colour: str) -> None:
@@ -225,12 +224,13 @@ def to_svg(drawing: np.ndarray, size: tuple[int, int], title: str) -> str:
     """The drawing as a stand-alone SVG document."""
     still = Still(size)
     for op, style, numbers in records(drawing):
-        getattr(still, op)(numbers, COLOURS[style])
+        getattr(still, op)(numbers, LIGHT[style])
+    still.close()
     width, height = size
     return (
         f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width} {height}" '
         f'font-family="system-ui, Arial, sans-serif"><title>{escape(title)}</title>'
-        f'<rect width="{width}" height="{height}" fill="{COLOURS["paper"]}"/>'
+        f'<rect width="{width}" height="{height}" fill="{LIGHT["paper"]}"/>'
         + "".join(still.out)
         + "</svg>\n"
     )

@@ -8,13 +8,20 @@ import sys
 import numpy as np
 import pytest
 
+import pfkit
 from pfkit.explore import wasm
 from pfkit.explore.cells import Cells, bound_and_used
 
 
 @pytest.fixture
-def cells():
+def cells(monkeypatch):
+    """Cells without matplotlib, as in the page, whatever other tests have imported."""
     kept = dict(sys.modules)
+    edge = ("matplotlib", "IPython", "ipywidgets", "pfkit.plotting", "pfkit.widgets")
+    for name in [n for n in kept if n in edge or n.split(".")[0] in edge]:
+        monkeypatch.delitem(sys.modules, name)
+    for name in ("plotting", "widgets"):
+        monkeypatch.delattr(pfkit, name, raising=False)
     yield Cells()
     for name in set(sys.modules) - set(kept):
         del sys.modules[name]  # the stand-ins for matplotlib

@@ -24,6 +24,7 @@ import io
 import json
 import os
 import re
+import runpy
 import shutil
 import subprocess
 import sys
@@ -36,6 +37,7 @@ ROOT = HERE.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
 PARTS = CACHE / "parts"
+PALETTE = ROOT / "pfkit" / "palette.py"
 OURS = (ROOT / "pfkit" / "explore" / "web", ROOT / "book" / "live")
 RUNTIME = ("pyodide.js", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip")
 # The edge of pfkit needs matplotlib, ipywidgets or nbformat, which the page does not have.
@@ -191,6 +193,8 @@ def build_site(site: Path, live: bool) -> None:
     for folder in OURS:
         for path in sorted(folder.glob("*.*")):
             shutil.copyfile(path, site / path.name)
+    script = runpy.run_path(str(PALETTE))["script"]()  # it needs no other part of pfkit
+    (site / "palette.js").write_text(script, encoding="utf-8", newline="\n")
     if not live:
         return
     for path in sorted(PARTS.iterdir()):

@@ -1,27 +1,13 @@
 /* Draws any scene: the counterpart of pfkit/explore/pen.py, which documents the array.
    Also decodes recorded runs (pfkit/explore/record.py). A classic script: it adds PF.* and needs
-   nothing else, so that the same file serves the book, a folder on disk, and Jupyter. */
+   only PF.palette (pfkit/palette.py), so that it serves the book, a folder on disk, and Jupyter. */
 (function (PF) {
   "use strict";
 
-  const STYLES = ["ink", "muted", "grid", "particle", "truth", "estimate", "landmark", "ray",
-    "accent", "good", "bad", "target", "proposal", "wall", "c1", "c2", "c3", "c4", "c5", "paper"];
   const SHAPES = ["circle", "square", "diamond", "cross", "triangle", "plus", "star"];
   const LEAD = { 2: 1, 4: 1, 9: 2, 10: 2, 11: 6, 14: 2 };
   const ROWS = { 2: 2, 3: 3, 4: 4, 9: 5, 10: 2, 11: 1, 14: 3 };
   const EXACT = new Set([1, 5, 6, 7, 8, 12, 13, 15]);
-  const LIGHT = {
-    ink: "#1d2733", muted: "#5b6775", grid: "#cfd6de", particle: "#2f6fbf", truth: "#15803d",
-    estimate: "#c2410c", landmark: "#6d28d9", ray: "#b7791f", accent: "#2563a8", good: "#15803d",
-    bad: "#b91c1c", target: "#15803d", proposal: "#b45309", wall: "#64717f", c1: "#2563a8",
-    c2: "#b45309", c3: "#15803d", c4: "#9d3a8f", c5: "#64717f", paper: "#fbfcfd",
-  };
-  const DARK = {
-    ink: "#eef2f6", muted: "#a7b3c0", grid: "#3a4653", particle: "#7db4f5", truth: "#63d68c",
-    estimate: "#ff9d5c", landmark: "#c4a5ff", ray: "#e9c46a", accent: "#7db4f5", good: "#63d68c",
-    bad: "#ff8a8a", target: "#63d68c", proposal: "#ffb65c", wall: "#8493a3", c1: "#7db4f5",
-    c2: "#ffb65c", c3: "#63d68c", c4: "#f0a0e2", c5: "#a7b3c0", paper: "#12181f",
-  };
   const FONT = "ui-sans-serif, system-ui, -apple-system, 'Segoe UI', Roboto, Arial, sans-serif";
 
   function rgb(hex) {
@@ -66,28 +52,30 @@
       if (this.last) this.draw(this.last);
     }
 
-    color(style) {
-      return (this.dark ? DARK : LIGHT)[STYLES[style]];
-    }
+    get colours() { return this.dark ? PF.palette.dark : PF.palette.light; }
+
+    color(style) { return this.colours[PF.palette.styles[style]]; }
 
     draw(data) {
       this.last = data;
       this.first = null;
       const c = this.context;
       c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
-      c.fillStyle = (this.dark ? DARK : LIGHT).paper;
+      c.save();
+      c.fillStyle = this.colours.paper;
       c.fillRect(0, 0, this.width, this.height);
       c.lineCap = "round";
       c.lineJoin = "round";
       for (let i = 0; i + 3 <= data.length;) {
         const op = data[i], style = data[i + 1], n = data[i + 2];
         const d = data.subarray(i + 3, i + 3 + n);
+        if (op === 1) this.view(d);
         c.strokeStyle = c.fillStyle = this.color(style);
         c.globalAlpha = 1;
-        if (op === 1) this.view(d);
-        else this[NAMES[op]](d, style);
+        if (op !== 1) this[NAMES[op]](d, style);
         i += 3 + n;
       }
+      c.restore();
       c.globalAlpha = 1;
     }
 
@@ -106,10 +94,19 @@
       }
       this.v = { left, bottom, width, height, sx, sy, x0, x1, y0, y1 };
       if (!this.first) this.first = this.v;
+      /* A map is cut at its edge; charts may write beside themselves. */
+      const c = this.context;
+      c.restore();
+      c.save();
+      if (equal) {
+        c.beginPath();
+        c.rect(left - 1, bottom - height - 1, width + 2, height + 2);
+        c.clip();
+      }
       if (box) {
-        this.context.strokeStyle = (this.dark ? DARK : LIGHT).grid;
-        this.context.lineWidth = 1;
-        this.context.strokeRect(Math.round(left) + 0.5, Math.round(bottom - height) + 0.5,
+        c.strokeStyle = this.colours.grid;
+        c.lineWidth = 1;
+        c.strokeRect(Math.round(left) + 0.5, Math.round(bottom - height) + 0.5,
           Math.round(width), Math.round(height));
       }
     }
@@ -232,29 +229,30 @@
       }
     }
 
+    /* The shapes of pfkit.plotting: truth a filled arrowhead, a guess an empty circle with a nose. */
     robots(d, style) {
-      const n = (d.length - 1) / 3, c = this.context;
-      const r = Math.max(d[0] * this.v.sx, 5);
-      for (let k = 1; k <= n; k++) {
+      const n = (d.length - 2) / 3, c = this.context;
+      const r = Math.max(d[0] * this.v.sx, 5), colour = this.color(style);
+      for (let k = 2; k < 2 + n; k++) {
         c.save();
         c.translate(this.X(d[k]), this.Y(d[k + n]));
         c.rotate(-d[k + 2 * n]);
-        c.globalAlpha = 1;
-        c.fillStyle = (this.dark ? DARK : LIGHT).paper;
-        c.strokeStyle = this.color(style);
-        c.lineWidth = 2;
         c.beginPath();
-        c.arc(0, 0, r, 0, 7);
+        if (d[1]) {
+          c.arc(0, 0, r, 0, 7);
+          c.moveTo(0, 0);
+          c.lineTo(r * 1.7, 0);
+        } else {
+          c.moveTo(r * 1.5, 0);
+          c.lineTo(-r, r * 0.85);
+          c.lineTo(-r, -r * 0.85);
+          c.closePath();
+        }
+        c.fillStyle = d[1] ? this.colours.paper : colour;
+        c.strokeStyle = d[1] ? colour : this.colours.paper;
+        c.lineWidth = d[1] ? 2 : 1;
         c.fill();
         c.stroke();
-        c.fillStyle = this.color(style);
-        c.beginPath();
-        c.moveTo(r * 1.5, 0);
-        c.lineTo(-r * 0.35, r * 0.62);
-        c.lineTo(-r * 0.05, 0);
-        c.lineTo(-r * 0.35, -r * 0.62);
-        c.closePath();
-        c.fill();
         c.restore();
       }
     }
@@ -348,7 +346,7 @@
           c.closePath();
         }
         c.fill();
-        c.strokeStyle = (this.dark ? DARK : LIGHT).paper;
+        c.strokeStyle = this.colours.paper;
         c.lineWidth = 1;
         c.stroke();
         c.strokeStyle = c.fillStyle;
