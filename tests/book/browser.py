@@ -44,7 +44,16 @@ NO_ALT = r"""[...document.querySelectorAll('img, svg[role=img]:not([aria-hidden]
 }).map(i => i.outerHTML.slice(0, 120))"""
 TYPESET = "() => window.MathJax?.startup?.promise?.then(() => 0)"
 MATH_ERRORS = "[...document.querySelectorAll('mjx-merror')].map(e => e.textContent.slice(0, 80))"
-SEVERE = """() => axe.run(document, {resultTypes: ['violations']}).then(r => r.violations
+# A colour on its way from one theme to the other has no contrast to judge.
+SETTLED = """() => Promise.all(document.getAnimations()
+  .filter(a => Number.isFinite(a.effect?.getComputedTiming().endTime))
+  .map(a => a.finished.catch(() => 0)))"""
+# What axe-core looks for: all of it; the colours; all but these, which a width does not change.
+EVERYTHING: dict[str, Any] = {}
+COLOURS: dict[str, Any] = {"runOnly": ["color-contrast"]}
+BUT_COLOURS: dict[str, Any] = {"rules": {"color-contrast": {"enabled": False}}}
+SEVERE = """(which) => axe.run(document, {resultTypes: ['violations'], ...which})
+  .then(r => r.violations
   .filter(v => ['serious', 'critical'].includes(v.impact))
   .map(v => `${v.id} (${v.impact}) x${v.nodes.length}: ${v.nodes[0].html.slice(0, 150)}`))"""
 
@@ -130,27 +139,38 @@ def check_width(tab: Any) -> list[str]:
     return [f"scrolls sideways by {excess} px"] if excess > 2 else []
 
 
-def check_access(tab: Any) -> list[str]:
+def check_access(tab: Any, which: dict[str, Any] = EVERYTHING) -> list[str]:
     """No axe-core violation of level serious or critical."""
     if not tab.evaluate("'axe' in window"):
         tab.evaluate(AXE.read_text(encoding="utf-8"))
-    return [f"axe: {text}" for text in tab.evaluate(SEVERE)]
+    tab.evaluate(SETTLED)
+    return [f"axe: {text}" for text in tab.evaluate(SEVERE, which)]
 
 
-def look(tab: Any, base: str, page: str, access: bool = True) -> list[str]:
-    """Open a page wide and narrow; return everything that is wrong with it."""
+def look(
+    tab: Any,
+    base: str,
+    page: str,
+    wide: dict[str, Any] | None = EVERYTHING,
+    narrow: dict[str, Any] | None = EVERYTHING,
+) -> list[str]:
+    """Open a page wide and narrow; return everything that is wrong with it.
+
+    `wide` and `narrow` say what axe-core looks for at that width; None: it is not asked.
+    """
     visit = Visit(base)
     visit.listen(tab)
     tab.set_viewport_size(WIDE)
     tab.goto(base + page, wait_until="load")
     tab.evaluate(TYPESET)
     found = check_content(tab)
-    for size in (WIDE, NARROW):
+    for size, which in ((WIDE, wide), (NARROW, narrow)):
         tab.set_viewport_size(size)
-        tab.wait_for_timeout(SETTLE if access and size == NARROW else 0)
-        found += [f"{text} at {size['width']} px" for text in check_width(tab)]
-        if access:
-            found += [f"{text} at {size['width']} px" for text in check_access(tab)]
+        at_this_width = check_width(tab)
+        if which is not None:
+            tab.wait_for_timeout(SETTLE if size == NARROW else 0)
+            at_this_width += check_access(tab, which)
+        found += [f"{text} at {size['width']} px" for text in at_this_width]
     if visit.own_bytes > LARGEST_PAGE:
         found.append(f"{visit.own_bytes // 1000} kB of its own, more than 400 kB")
     return visit.complaints + found

@@ -44,6 +44,21 @@ def test_each_fault_is_seen(fault, tab, tmp_path):
     assert look(tab, tmp_path, html) != []
 
 
+def test_a_colour_on_its_way_is_waited_for(tab, tmp_path):
+    fading = "<style>p { animation: in 2s } @keyframes in { from { color: #eee } }</style><p>"
+    assert look(tab, tmp_path, GOOD.replace("<p>", fading)) == []
+
+
+def test_colours_alone_and_all_but_colours(tab, tmp_path):
+    html = GOOD.replace(*BROKEN["too little contrast"]).replace('<html lang="en">', "<html>")
+    (tmp_path / "page.html").write_text(html, encoding="utf-8")
+    with browser.served(tmp_path) as address:
+        colours = browser.look(tab, address, "page.html", browser.COLOURS, None)
+        others = browser.look(tab, address, "page.html", browser.BUT_COLOURS, None)
+    assert [text.split()[1] for text in colours] == ["color-contrast"]
+    assert [text.split()[1] for text in others] == ["html-has-lang"]
+
+
 def test_a_large_page_is_seen(tab, tmp_path):
     assert "kB of its own" in look(tab, tmp_path, GOOD.replace("Text", "Text " * 100_000))[-1]
 
