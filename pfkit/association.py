@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError
-from pfkit.landmark_sensors import Bearing, Range, RangeBearing
+from pfkit.landmark_sensors import LandmarkSensor
 from pfkit.sensors import Sensor
 
 Array = NDArray[np.float64]
@@ -54,10 +54,10 @@ class MaximumLikelihood(Sensor):
     Source: Probabilistic Robotics, section 7.5 and Table 7.3, for each particle by itself.
     """
 
-    sensor: Sensor
+    sensor: LandmarkSensor
 
     def __post_init__(self) -> None:
-        if not isinstance(self.sensor, Range | Bearing | RangeBearing):
+        if not isinstance(self.sensor, LandmarkSensor):
             raise ParameterError(
                 f"MaximumLikelihood needs Range, Bearing or RangeBearing, got {self.sensor!r:.80}; "
                 "put robust wrappers about it, not into it"
@@ -73,17 +73,13 @@ class MaximumLikelihood(Sensor):
         """Rows of a measurement that are angles, those of the sensor."""
         return self.sensor.angles
 
-    def expected(self, pose: Array, **which: Any) -> Array:
-        """Noise-free measurements, without their names: (n, K, ...)."""
-        return self.sensor.expected(pose, **which)[:-1]  # type: ignore[attr-defined]
-
     def sample(self, pose: Array, rng: np.random.Generator, **which: Any) -> Array:
         """Noisy measurements, without their names: (n, K, ...)."""
-        return self.sensor.sample(pose, rng, **which)[:-1]  # type: ignore[attr-defined]
+        return self.sensor.sample(pose, rng, **which)[:-1]
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log density under the landmark that explains zk best, at each pose: shape (...)."""
-        ids = self.sensor.world.ids  # type: ignore[attr-defined]
+        ids = self.sensor.world.ids
         best = self._given(ids[0], zk, pose)
         for s in ids[1:]:
             best = np.maximum(best, self._given(s, zk, pose))

@@ -37,10 +37,9 @@ from pfkit.errors import (
     ParameterError,
     ShapeError,
     as_numbers,
-    require_components,
     require_finite,
     require_fraction,
-    require_positive,
+    require_positive_number,
     require_rng,
 )
 from pfkit.occupancy import OccupancyGrid
@@ -119,7 +118,7 @@ class BeamModel(Sensor):
         if directions.ndim != 1 or directions.size == 0:
             raise ShapeError(f"directions must have shape (K,), K >= 1, got {directions.shape}")
         for name in ("r_max", "sigma_hit", "lambda_short"):
-            require_positive(name, getattr(self, name))
+            require_positive_number(name, getattr(self, name))
         total = sum(require_fraction(name, getattr(self, name)) for name in SHARES)
         if abs(total - 1) > 1e-9:
             raise ParameterError(f"z_hit + z_short + z_max + z_rand must be 1, got {total}")
@@ -136,26 +135,29 @@ class BeamModel(Sensor):
         phi = self.directions if phi is None else phi
         return self._caster.cast(pose, phi, math.inf)  # type: ignore[attr-defined]
 
-    def expected(self, pose: Array, phi: ArrayLike | None = None) -> Array:
+    def expected(self, pose: Array) -> Array:
         """What a sensor without faults would read: (2, K, ...)."""
-        phi = np.asarray(self.directions if phi is None else phi, dtype=float)
-        r = np.minimum(self.lengths(pose, phi), self.r_max)
-        column = phi.reshape(*phi.shape, *(1,) * (r.ndim - phi.ndim))
-        return np.stack((r, np.broadcast_to(column, r.shape)))
+        return self._readings(np.minimum(self.lengths(pose), self.r_max))
+
+    def _readings(self, r: Array) -> Array:
+        """Ranges (K, ...) with the sensor's directions beside them: (2, K, ...)."""
+        phi = np.reshape(self.directions, (-1, *(1,) * (r.ndim - 1)))
+        return np.stack((r, np.broadcast_to(phi, r.shape)))
 
     def sample(self, pose: Array, rng: np.random.Generator) -> Array:
         """Readings with all four kinds of faults: (2, K, ...)."""
         require_rng(rng)
-        z = self.expected(pose)
         length = self.lengths(pose)
         shape = length.shape
-        hit = np.abs(length + self.sigma_hit * rng.standard_normal(shape))
+        hit = length + self.sigma_hit * rng.standard_normal(shape)
+        while (behind := hit < 0).any():  # the Gaussian ends at the sensor
+            hit[behind] = length[behind] + self.sigma_hit * rng.standard_normal(behind.sum())
         unit = rng.random(shape)  # the exponential that ends at the wall, by inversion
         short = -np.log1p(unit * np.expm1(-self.lambda_short * length)) / self.lambda_short
         lost, unexplained = np.full(shape, self.r_max), self.r_max * rng.random(shape)
         kind = rng.choice(4, size=shape, p=self.shares)
-        z[0] = np.minimum(np.choose(kind, (hit, short, lost, unexplained)), self.r_max)
-        return z
+        r = np.choose(kind, (hit, short, lost, unexplained))
+        return self._readings(np.minimum(r, self.r_max))
 
     def parts(self, r: ArrayLike, length: ArrayLike) -> Array:
         """The four densities (4, ...) of readings r whose beams should fly `length` metres.
@@ -187,7 +189,7 @@ class BeamModel(Sensor):
 
     def log_likelihood(self, z: ArrayLike, pose: Array) -> Array:
         """Sum of log densities over the beams: z (2, K) or (2, K, B, 1), one number per pose."""
-        r, phi = require_components("z", z, 2, DataError)
+        r, phi = self.read(z)
         pose = self.check_state(pose)
         total = np.zeros(pose.shape[1:])
         for rk, length in zip(r, self.lengths(pose, phi), strict=True):

@@ -39,6 +39,8 @@ def chi2_tail(x: float, k: int) -> float:
     x = require_number("x", x)
     if x <= 0:
         return 1.0
+    if math.isinf(x):
+        return 0.0
     half = 0.5 * x
     tail = math.erfc(math.sqrt(half)) if k % 2 else math.exp(-half)
     for j in range(3 if k % 2 else 4, k + 1, 2):

@@ -111,7 +111,7 @@ def bootstrap_interval(
     require_rng(rng)
     require_callable("statistic", statistic)
     x = _runs(x, 2)
-    _require_level(level)
+    require_level(level)
     again = x[rng.integers(0, x.size, (require_count("draws", draws), x.size), dtype=np.int64)]
     low, high = np.quantile(statistic(again, axis=-1), (0.5 - level / 2, 0.5 + level / 2))
     return Interval(float(statistic(x, axis=-1)), float(low), float(high))
@@ -144,7 +144,7 @@ def wilson_interval(successes: int, n: int, level: float = 0.95) -> Interval:
     n, successes = require_count("n", n), require_count("successes", successes, 0)
     if successes > n:
         raise ParameterError(f"{successes} successes in {n} runs; check the count")
-    _require_level(level)
+    require_level(level)
     p, z = successes / n, NormalDist().inv_cdf(0.5 + level / 2)
     centre, scale = p + z * z / (2 * n), 1 + z * z / n
     half = z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
@@ -243,7 +243,7 @@ def compare(
     seed = require_count("seed", seed, 0)
     streams = np.random.SeedSequence(seed).spawn(require_count("seeds", seeds, 2) + 1)
     a, b = (
-        [float(run(np.random.default_rng(stream))) for stream in streams[1:]]
+        [require_number("a score", run(np.random.default_rng(stream))) for stream in streams[1:]]
         for run in (run_a, run_b)
     )
     return paired(a, b, np.random.default_rng(streams[0]))
@@ -256,6 +256,7 @@ def _runs(x: ArrayLike, least: int) -> Array:
     return x
 
 
-def _require_level(level: float) -> None:
+def require_level(level: float) -> None:
+    """Raise `ParameterError` unless a level of confidence lies between 0 and 1."""
     if not 0 < require_number("level", level) < 1:
         raise ParameterError(f"level must be in (0, 1), got {level}; 0.95 is usual")

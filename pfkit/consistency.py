@@ -22,13 +22,12 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.chi2 import chi2_quantile
-from pfkit.comparison import Interval, wilson_interval
+from pfkit.comparison import Interval, require_level, wilson_interval
 from pfkit.errors import (
     ParameterError,
     ShapeError,
     require_count,
     require_finite,
-    require_number,
 )
 
 Array = NDArray[np.float64]
@@ -92,8 +91,7 @@ def nees_band(D: int, runs: int, level: float = 0.95) -> tuple[float, float]:
         If D or runs is not a whole number of at least 1, or the level is not in (0, 1).
     """
     D, runs = require_count("D", D), require_count("runs", runs)
-    if not 0 < require_number("level", level) < 1:
-        raise ParameterError(f"level must be in (0, 1), got {level}; 0.95 is usual")
+    require_level(level)
     low, high = (chi2_quantile(0.5 + s * level / 2, D * runs) / runs for s in (-1, 1))
     return low, high
 
@@ -122,7 +120,6 @@ def coverage(error: ArrayLike, Sigma: ArrayLike, level: float = 0.9) -> Interval
     distance = nees(error, Sigma)
     if distance.ndim != 1:
         raise ShapeError(f"coverage counts runs: error must be (D, n), got {np.shape(error)}")
-    if not 0 < require_number("level", level) < 1:
-        raise ParameterError(f"level must be in (0, 1), got {level}")
+    require_level(level)
     inside = int(np.sum(distance <= chi2_quantile(level, len(np.asarray(error)))))
     return wilson_interval(inside, distance.size)

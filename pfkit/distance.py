@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_positive
+from pfkit.errors import ParameterError, ShapeError, require_positive_number
 
 Array = NDArray[np.float64]
 
@@ -47,7 +47,7 @@ def distance_field(occupied: ArrayLike, resolution: float = 1.0) -> Array:
     functions", Theory of Computing 8 (2012), for the split; the search here is simpler.
     """
     occupied = np.asarray(occupied)
-    require_positive("resolution", resolution)
+    require_positive_number("resolution", resolution)
     if occupied.ndim != 2 or occupied.size == 0:
         raise ShapeError(f"occupied must have shape (rows, columns), got {occupied.shape}")
     if occupied.dtype != bool:

@@ -24,6 +24,7 @@ from pfkit.errors import (
     ShapeError,
     require_count,
     require_finite,
+    require_instance,
     require_method,
     require_rng,
 )
@@ -103,6 +104,7 @@ def _driver(u: ArrayLike | Driver, steps: int | None) -> tuple[Driver, int]:
 
 
 def _kidnap_steps(kidnap: Kidnap | None, steps: int) -> Kidnap:
+    require_instance("kidnap", kidnap or {}, Mapping)
     wrong = [k for k in kidnap or {} if k not in range(steps)]
     if wrong:
         raise ParameterError(f"kidnap at step {wrong[0]}: the drive has steps 0 to {steps - 1}")
@@ -116,6 +118,9 @@ def _carry_off(
     if goal is None:
         if world is None:
             raise ParameterError("kidnap to None needs a world to draw from; name a pose instead")
+        require_method("world", world, "sample_poses")
         return world.sample_poses(shape[1:] or (1,), rng).reshape(shape)
     goal = require_finite("kidnap pose", goal)
+    if goal.shape != shape[:1]:
+        raise ShapeError(f"a kidnap pose must have shape {shape[:1]}, got {goal.shape}")
     return np.broadcast_to(goal.reshape(-1, *(1,) * (len(shape) - 1)), shape).copy()

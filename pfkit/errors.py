@@ -77,6 +77,22 @@ def require_non_negative(name: str, value: Any) -> np.ndarray:
     return array
 
 
+def require_positive_number(name: str, value: Any) -> float:
+    """Return `value` as a float; raise `ParameterError` unless it is one finite number > 0."""
+    return _one(name, require_positive(name, value))
+
+
+def require_non_negative_number(name: str, value: Any) -> float:
+    """Return `value` as a float; raise `ParameterError` unless it is one finite number >= 0."""
+    return _one(name, require_non_negative(name, value))
+
+
+def _one(name: str, array: np.ndarray) -> float:
+    if array.ndim:
+        raise ParameterError(f"{name} must be one number, got {array!r:.60} of shape {array.shape}")
+    return float(array)
+
+
 def require_fraction(name: str, value: Any) -> float:
     """Return `value` as a float; raise `ParameterError` unless it lies in [0, 1]."""
     array = require_finite(name, value)
@@ -115,6 +131,36 @@ def require_components(
             f"{name} must have its {n} components first, shape ({n}, ...), got {array.shape}{hint}"
         )
     return require_finite(name, array, error)
+
+
+def require_plane(state: Any) -> np.ndarray:
+    """Return a state (D, ...) of any dimension D >= 2 as a finite array: x and y come first."""
+    array = require_finite("state", state)
+    if array.ndim == 0 or array.shape[0] < 2:
+        raise ShapeError(f"state must have x and y first, shape (2, ...), got {array.shape}")
+    return array
+
+
+def require_covariance(name: str, value: Any, n: int) -> np.ndarray:
+    """Return a covariance (n, n) as an array; standard deviations (n,), maybe 0, become one."""
+    Sigma = require_finite(name, value)
+    if n == 0 or Sigma.shape not in ((n,), (n, n)):
+        raise ShapeError(f"{name} must have shape {(n, n)} or {(n,)}, n >= 1, got {Sigma.shape}")
+    if Sigma.ndim == 1:
+        return np.diag(require_non_negative(name, Sigma) ** 2)
+    lowest, slack = np.linalg.eigvalsh(Sigma)[0], 1e-9 * max(np.trace(Sigma), 1.0)
+    if np.abs(Sigma - Sigma.T).max() > slack or lowest < -slack:
+        raise ParameterError(
+            f"{name} must be symmetric with eigenvalues >= 0, got {Sigma.tolist()!r:.80}"
+        )
+    return 0.5 * (Sigma + Sigma.T)
+
+
+def whole_cells(at: np.ndarray) -> np.ndarray:
+    """Numbers of cells, int64, from positions counted in cells; too large ones are refused."""
+    if np.abs(at).max(initial=0.0) > 2**62:
+        raise ParameterError(f"{np.abs(at).max():g} cells from the origin; take larger cells")
+    return np.floor(at).astype(np.int64)
 
 
 def require_rng(rng: Any) -> None:

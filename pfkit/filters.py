@@ -37,7 +37,7 @@ from pfkit.errors import (
 from pfkit.motion import MotionModel
 from pfkit.particles import Particles, normalise, require_particles
 from pfkit.resampling import Resampler, systematic
-from pfkit.sensors import SensorModel
+from pfkit.sensors import SensorModel, how_many
 from pfkit.triggers import Trigger, ess_below
 
 Array = NDArray[np.float64]
@@ -134,7 +134,7 @@ def update(
     """
     require_particles(bel)
     require_method("sensor", sensor, "log_likelihood")
-    if z is None or _columns(z) == 0:
+    if how_many(z) == 0:
         return bel, np.zeros(bel.log_w.shape[:-1])[()]
     log_likelihood = sensor.log_likelihood(as_numbers("z", z, DataError), bel.state)
     if np.shape(log_likelihood) != bel.log_w.shape:
@@ -144,11 +144,6 @@ def update(
         )
     log_w, log_evidence = normalise(bel.log_w + log_likelihood)
     return Particles.trusted(bel.state, log_w), log_evidence
-
-
-def _columns(z: ArrayLike) -> int:
-    shape = np.shape(z)
-    return shape[1] if len(shape) > 1 else 1
 
 
 def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
@@ -277,7 +272,7 @@ def step(
     bel, log_evidence = update(bel, z, sensor)
     ess = bel.ess
     ancestors = np.broadcast_to(np.arange(bel.M, dtype=np.int64), bel.log_w.shape)
-    if z is None or _columns(z) == 0:
+    if how_many(z) == 0:
         poor = np.zeros(np.shape(ess), dtype=bool)
     else:
         poor = np.broadcast_to(np.asarray(trigger(bel, k), dtype=bool), np.shape(ess))

@@ -38,8 +38,9 @@ from pfkit.errors import (
 )
 from pfkit.geometry import circular_mean
 from pfkit.kalman import Gaussian, angles_of, condition, wrap_rows
+from pfkit.landmark_sensors import LandmarkSensor
 from pfkit.motion import MotionModel
-from pfkit.sensors import Sensor
+from pfkit.sensors import Sensor, how_many
 
 Array = NDArray[np.float64]
 Function = Callable[[Array], Array]
@@ -95,8 +96,9 @@ def unscented(
 
     Notes
     -----
-    Source: Probabilistic Robotics, Table 3.4, with kappa = 0: all weights are equal and
-    positive, so Y is a covariance whatever f does (the "cubature" points).
+    Source: Probabilistic Robotics, Table 3.4, with alpha = 1 and beta = kappa = 0: the point in
+    the middle has no weight, all others have the same, and Y is a covariance whatever f does
+    (the "cubature" points).
     """
     mean, Sigma = _moments(f, mean, Sigma)
     values, vectors = np.linalg.eigh(Sigma)
@@ -183,12 +185,13 @@ def gaussian_update(
     require_instance("bel", bel, Gaussian)
     require_instance("sensor", sensor, Sensor)
     gate = require_number("gate", gate, above=0.0)
-    if z is None or np.size(z) == 0:
+    if how_many(z) == 0:
         return bel, 0.0, 0
     z = require_components("z", z, sensor.components, DataError)
     total, rejected = 0.0, 0
     for column in z.reshape(z.shape[0], -1).T:
-        which: dict[str, Any] = {"ids": column[-1:]} if hasattr(sensor, "world") else {}
+        named = isinstance(sensor, LandmarkSensor)
+        which: dict[str, Any] = {"ids": column[-1:]} if named else {}
         n = column.size - len(which)
         mean, Sigma, f = _augment(bel, lambda x, rng: _measure(sensor, x, rng, which)[:n])  # noqa: B023
         y, S, cross = transform(f, mean, Sigma, sensor.angles)
@@ -209,7 +212,7 @@ def _moments(f: Function, mean: ArrayLike, Sigma: ArrayLike) -> tuple[Array, Arr
 
 def _measure(sensor: Any, state: Array, rng: Any, which: dict[str, Any]) -> Array:
     """One noisy measurement (n, P) of states (D, P)."""
-    if not hasattr(sensor, "sample"):
+    if not hasattr(sensor, "sample") or hasattr(sensor, "sensor"):
         raise ParameterError(
             f"{type(sensor).__name__} has no Gaussian noise to linearise; give the Gaussian "
             "filter the sensor it wraps, and a gate against outliers"

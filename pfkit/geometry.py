@@ -127,9 +127,7 @@ def between(pose0: ArrayLike, pose1: ArrayLike) -> NDArray[np.float64]:
     return compose(inverse(pose0), pose1)
 
 
-def circular_mean(
-    theta: ArrayLike, w: ArrayLike | None = None, axis: int = -1
-) -> NDArray[np.float64]:
+def circular_mean(theta: ArrayLike, w: ArrayLike | None = None) -> NDArray[np.float64]:
     r"""Weighted mean direction.
 
     .. math:: \bar\theta = \mathrm{atan2}\Big(\sum_m w_m \sin\theta_m,\;
@@ -138,10 +136,8 @@ def circular_mean(
     Parameters
     ----------
     theta : array_like (..., M), radians
-    w : array_like (..., M), optional
+    w : array_like (..., M) or (M,), optional
         Weights; equal if left out. They need not sum to one.
-    axis : int
-        The axis that is averaged away.
 
     Returns
     -------
@@ -166,5 +162,5 @@ def circular_mean(
     if weights.shape not in ((), theta.shape, theta.shape[-1:]):
         raise ShapeError(f"w must have the shape of theta, {theta.shape}, got {weights.shape}")
     return np.arctan2(
-        np.sum(weights * np.sin(theta), axis=axis), np.sum(weights * np.cos(theta), axis=axis)
+        np.sum(weights * np.sin(theta), axis=-1), np.sum(weights * np.cos(theta), axis=-1)
     )

@@ -39,7 +39,7 @@ from pfkit.geometry import compose
 from pfkit.motion import MotionModel
 from pfkit.particles import normalise
 from pfkit.posegrid import PoseGrid
-from pfkit.sensors import SensorModel
+from pfkit.sensors import SensorModel, how_many
 
 Array = NDArray[np.float64]
 
@@ -204,7 +204,7 @@ def update_grid(bel: PoseGrid, z: ArrayLike | None, sensor: SensorModel) -> tupl
     """
     require_instance("bel", bel, PoseGrid)
     require_method("sensor", sensor, "log_likelihood")
-    if z is None or np.size(z) == 0:
+    if how_many(z) == 0:
         return bel, 0.0
     prior = bel.particles()
     log_likelihood = sensor.log_likelihood(require_finite("z", z, DataError), prior.state)

@@ -45,18 +45,16 @@ class Intermittent(Sensor):
         """Rows of a measurement: one more than the wrapped sensor's."""
         return self.sensor.components + 1
 
-    def expected(self, pose: Array, **which: Any) -> Array:
-        """Noise-free measurement with every column seen: (n + 1, K, ...)."""
-        return _with_row(self.sensor.expected(pose, **which))  # type: ignore[attr-defined]
+    @property
+    def angles(self) -> tuple[int, ...]:  # type: ignore[override]
+        """Rows of a measurement that are angles, those of the wrapped sensor."""
+        return self.sensor.angles
 
     def sample(self, pose: Array, rng: np.random.Generator, **which: Any) -> Array:
         """Noisy measurement with every column seen: (n + 1, K, ...)."""
-        return _with_row(self.sensor.sample(pose, rng, **which))  # type: ignore[attr-defined]
+        z = self.sensor.sample(pose, rng, **which)  # type: ignore[attr-defined]
+        return np.concatenate((z, np.ones_like(z[:1])))
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one column where it was measured, else 0: shape (...)."""
         return np.where(zk[-1] > 0, self.sensor.log_density(zk[:-1], pose), 0.0)
-
-
-def _with_row(z: Array) -> Array:
-    return np.concatenate((z, np.ones_like(z[:1])))

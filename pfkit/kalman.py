@@ -27,6 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     ParameterError,
     ShapeError,
+    require_covariance,
     require_finite,
     require_instance,
     require_number,
@@ -67,21 +68,11 @@ class Gaussian:
     Sigma: Array
 
     def __post_init__(self) -> None:
-        mean, Sigma = require_finite("mean", self.mean), require_finite("Sigma", self.Sigma)
-        D = mean.size
-        if mean.ndim != 1 or Sigma.shape not in ((D,), (D, D)):
-            raise ShapeError(
-                f"mean (D,) needs Sigma (D, D) or (D,), got {mean.shape} and {Sigma.shape}"
-            )
-        if Sigma.ndim == 1:
-            Sigma = np.diag(Sigma**2)
-        lowest, slack = np.linalg.eigvalsh(Sigma)[0], 1e-9 * max(np.trace(Sigma), 1.0)
-        if np.abs(Sigma - Sigma.T).max() > slack or lowest < -slack:
-            raise ParameterError(
-                f"Sigma must be symmetric with eigenvalues >= 0, got {Sigma.tolist()!r:.80}"
-            )
+        mean = require_finite("mean", self.mean)
+        if mean.ndim != 1:
+            raise ShapeError(f"mean must have shape (D,), got {mean.shape}")
         object.__setattr__(self, "mean", mean)
-        object.__setattr__(self, "Sigma", 0.5 * (Sigma + Sigma.T))
+        object.__setattr__(self, "Sigma", require_covariance("Sigma", self.Sigma, mean.size))
 
 
 def kalman_predict(
@@ -112,12 +103,11 @@ def kalman_predict(
     Source: Probabilistic Robotics, Table 3.1, lines 2 and 3.
     """
     require_instance("bel", bel, Gaussian)
-    F, D = require_finite("F", F), bel.mean.size
-    Sigma_u, shift = require_finite("Sigma_u", Sigma_u), require_finite("shift", shift)
-    if F.shape != (D, D) or Sigma_u.shape != (D, D) or shift.shape not in ((), (D,)):
+    F, shift, D = require_finite("F", F), require_finite("shift", shift), bel.mean.size
+    Sigma_u = require_covariance("Sigma_u", Sigma_u, D)
+    if F.shape != (D, D) or shift.shape not in ((), (D,)):
         raise ShapeError(
-            f"F and Sigma_u must have shape {(D, D)} and shift {(D,)}, got {F.shape}, "
-            f"{Sigma_u.shape} and {shift.shape}"
+            f"F must have shape {(D, D)} and shift {(D,)}, got {F.shape} and {shift.shape}"
         )
     return Gaussian(F @ bel.mean + shift, F @ bel.Sigma @ F.T + Sigma_u)
 
@@ -149,7 +139,8 @@ def kalman_update(
     Raises
     ------
     ShapeError, ParameterError
-        If shapes do not match, a number is not finite, or the gate is not positive.
+        If shapes do not match, a number is not finite, Sigma_z is not a covariance or leaves
+        S singular, or the gate is not positive.
 
     Notes
     -----
@@ -158,13 +149,10 @@ def kalman_update(
     require_instance("bel", bel, Gaussian)
     gate = require_number("gate", gate, above=0.0)
     z, H = require_finite("z", z), require_finite("H", H)
-    Sigma_z = require_finite("Sigma_z", Sigma_z)
     n, D = z.size, bel.mean.size
-    if z.ndim != 1 or H.shape != (n, D) or Sigma_z.shape != (n, n):
-        raise ShapeError(
-            f"z (n,) needs H (n, {D}) and Sigma_z (n, n), "
-            f"got {z.shape}, {H.shape} and {Sigma_z.shape}"
-        )
+    if z.ndim != 1 or H.shape != (n, D):
+        raise ShapeError(f"z (n,) needs H (n, {D}), got {z.shape} and {H.shape}")
+    Sigma_z = require_covariance("Sigma_z", Sigma_z, n)
     cross = bel.Sigma @ H.T
     return condition(bel, z - H @ bel.mean, H @ cross + Sigma_z, cross, gate)
 
@@ -188,11 +176,22 @@ def condition(
     -------
     Gaussian, log_evidence, rejected
         As in `kalman_update`.
+
+    Raises
+    ------
+    ParameterError
+        If S is singular.
     """
+    try:
+        K = np.linalg.solve(S, cross.T).T
+    except np.linalg.LinAlgError:
+        raise ParameterError(
+            f"the innovation's covariance {S.tolist()!r:.60} is singular: neither belief nor "
+            "sensor has any noise in some direction; give the sensor some"
+        ) from None
     distance = float(innovation @ np.linalg.solve(S, innovation))
     if distance > gate:
         return bel, 0.0, True
-    K = np.linalg.solve(S, cross.T).T
     mean = wrap_rows(bel.mean + K @ innovation, angles_of(bel.mean))
     log_evidence = -0.5 * (distance + np.linalg.slogdet(2 * math.pi * S)[1])
     return Gaussian(mean, bel.Sigma - K @ S @ K.T), float(log_evidence), False

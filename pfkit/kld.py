@@ -32,12 +32,13 @@ from pfkit.errors import (
     require_number,
     require_positive,
     require_rng,
+    whole_cells,
 )
 from pfkit.filters import Info, predict, select, update
 from pfkit.motion import MotionModel
 from pfkit.particles import Particles, require_particles
 from pfkit.resampling import multinomial
-from pfkit.sensors import SensorModel
+from pfkit.sensors import SensorModel, how_many
 
 CELL = (0.5, 0.5, math.pi / 18)
 
@@ -82,7 +83,9 @@ def kld_bound(
     more = np.maximum(k - 1, 1)
     spread = 2 / (9 * more)
     n = more / (2 * epsilon) * (1 - spread + np.sqrt(spread) * quantile) ** 3
-    return np.where(k > 1, np.ceil(n), 1).astype(np.int64)[()]
+    if n.max() > 2**62:
+        raise ParameterError(f"{n.max():g} particles are too many; raise epsilon, got {epsilon:g}")
+    return np.where(k > 1, np.maximum(np.ceil(n), 1), 1).astype(np.int64)[()]
 
 
 def kld_count(
@@ -119,7 +122,7 @@ def kld_count(
             f"state (D, n) needs cell (D,), got {state.shape} and {cell.shape}; "
             "KLD-sampling is for one filter, not for a batch"
         )
-    cells = np.floor(state / cell[:, None]).astype(np.int64)
+    cells = whole_cells(state / cell[:, None])
     _, first = np.unique(cells, axis=1, return_index=True)
     met = np.zeros(state.shape[1], dtype=np.int64)
     met[first] = 1
@@ -174,7 +177,7 @@ def kld_step(
     """
     if require_particles(bel).log_w.ndim != 1:
         raise ShapeError("KLD-sampling is for one filter (D, M): in a batch all sizes must agree")
-    if z is None or np.size(z) == 0:
+    if how_many(z) == 0:
         moved, ancestors = predict(bel, u, motion, rng), np.arange(bel.M, dtype=np.int64)
         return moved, Info(np.float64(0.0), moved.ess, np.False_, ancestors)
     require_rng(rng)

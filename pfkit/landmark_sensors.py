@@ -24,7 +24,8 @@ from pfkit.errors import (
     require_components,
     require_finite,
     require_method,
-    require_positive,
+    require_number,
+    require_positive_number,
 )
 from pfkit.geometry import _wrap, wrap
 from pfkit.maps import LandmarkMap
@@ -41,8 +42,40 @@ def _seen(world: LandmarkMap, ids: ArrayLike | None, pose: Array) -> tuple[Array
     return world.locate(ids)[column] - pose[:2, None], s
 
 
+class LandmarkSensor(Sensor):
+    """What the three have in common: a map, and the identity in the last row of z.
+
+    A subclass names the noise of each row before it in `scales`, and says in `expected` what a
+    sensor without noise would measure.
+    """
+
+    world: LandmarkMap
+    nu: float
+    scales: ClassVar[tuple[str, ...]]
+    broadcasts: ClassVar[bool] = True
+
+    def __post_init__(self) -> None:
+        require_method("world", self.world, "locate", "index")
+        for name in self.scales:
+            require_positive_number(name, getattr(self, name))
+        require_nu(self.nu)
+
+    def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
+        """Noise-free measurement of landmarks (all if `ids` is left out): (n, K, ...)."""
+        raise NotImplementedError
+
+    def sample(self, pose: Array, rng: np.random.Generator, ids: ArrayLike | None = None) -> Array:
+        """Noisy measurement of landmarks (all if `ids` is left out): (n, K, ...)."""
+        z = self.expected(pose, ids)
+        for row, name in zip(z, self.scales, strict=False):  # the identity has no noise
+            row += draw_errors(getattr(self, name), self.nu, row.shape, rng)
+        for angle in self.angles:
+            z[angle] = wrap(z[angle])
+        return z
+
+
 @dataclass(frozen=True)
-class RangeBearing(Sensor):
+class RangeBearing(LandmarkSensor):
     r"""Distance and direction to landmarks of known identity: columns z_k = (r, phi, s).
 
     .. math:: \hat r = \sqrt{(m_x - x)^2 + (m_y - y)^2}, \qquad
@@ -77,29 +110,19 @@ class RangeBearing(Sensor):
     nu: float = math.inf
     bias_phi: float = 0.0
     components: ClassVar[int] = 3
+    scales: ClassVar[tuple[str, ...]] = ("sigma_r", "sigma_phi")
     angles: ClassVar[tuple[int, ...]] = (1,)
-    broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        require_method("world", self.world, "locate")
-        require_positive("sigma_r", self.sigma_r)
-        require_positive("sigma_phi", self.sigma_phi)
-        require_finite("bias_phi", self.bias_phi)
-        require_nu(self.nu)
+        super().__post_init__()
+        require_number("bias_phi", require_finite("bias_phi", self.bias_phi))
 
     def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
-        """Noise-free measurement of landmarks (all if `ids` is left out): (3, K, ...)."""
+        """Noise-free (but biased) ranges and bearings of landmarks: (3, K, ...)."""
         pose = require_components("pose", pose, 3)
         (dx, dy), s = _seen(self.world, ids, pose)
         bearing = wrap(np.arctan2(dy, dx) - pose[2] + self.bias_phi)
         return np.stack((np.hypot(dx, dy), bearing, s))
-
-    def sample(self, pose: Array, rng: np.random.Generator, ids: ArrayLike | None = None) -> Array:
-        """Noisy measurement of landmarks (all if `ids` is left out): (3, K, ...)."""
-        z = self.expected(pose, ids)
-        z[0] += draw_errors(self.sigma_r, self.nu, z[0].shape, rng)
-        z[1] = wrap(z[1] + draw_errors(self.sigma_phi, self.nu, z[1].shape, rng))
-        return z
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one measurement (r, phi, s) at poses (3, ...): shape (...)."""
@@ -115,7 +138,7 @@ class RangeBearing(Sensor):
 
 
 @dataclass(frozen=True)
-class Bearing(Sensor):
+class Bearing(LandmarkSensor):
     r"""Direction to landmarks of known identity, from the robot's nose: columns z_k = (phi, s).
 
     .. math:: p(z \mid x) = \mathcal N(\mathrm{wrap}(\phi - b - \hat\phi);\,
@@ -142,26 +165,18 @@ class Bearing(Sensor):
     nu: float = math.inf
     bias_phi: float = 0.0
     components: ClassVar[int] = 2
+    scales: ClassVar[tuple[str, ...]] = ("sigma_phi",)
     angles: ClassVar[tuple[int, ...]] = (0,)
-    broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        require_method("world", self.world, "locate")
-        require_positive("sigma_phi", self.sigma_phi)
-        require_finite("bias_phi", self.bias_phi)
-        require_nu(self.nu)
+        super().__post_init__()
+        require_number("bias_phi", require_finite("bias_phi", self.bias_phi))
 
     def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
         """Noise-free (but biased) bearings of landmarks: (2, K, ...)."""
         pose = require_components("pose", pose, 3)
         (dx, dy), s = _seen(self.world, ids, pose)
         return np.stack((wrap(np.arctan2(dy, dx) - pose[2] + self.bias_phi), s))
-
-    def sample(self, pose: Array, rng: np.random.Generator, ids: ArrayLike | None = None) -> Array:
-        """Noisy bearings of landmarks: (2, K, ...)."""
-        z = self.expected(pose, ids)
-        z[0] = wrap(z[0] + draw_errors(self.sigma_phi, self.nu, z[0].shape, rng))
-        return z
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one measurement (phi, s) at poses (3, ...): shape (...)."""
@@ -173,7 +188,7 @@ class Bearing(Sensor):
 
 
 @dataclass(frozen=True)
-class Range(Sensor):
+class Range(LandmarkSensor):
     r"""Distance to beacons of known identity: columns z_k = (r, s).
 
     .. math:: p(z \mid x) = \mathcal N(r - b_s - \hat r;\, 0, \sigma_r^2)
@@ -199,33 +214,23 @@ class Range(Sensor):
     bias: float | Array = 0.0
     nu: float = math.inf
     components: ClassVar[int] = 2
-    broadcasts: ClassVar[bool] = True
+    scales: ClassVar[tuple[str, ...]] = ("sigma_r",)
 
     def __post_init__(self) -> None:
-        require_method("world", self.world, "locate")
-        require_positive("sigma_r", self.sigma_r)
-        require_nu(self.nu)
+        super().__post_init__()
         bias = require_finite("bias", self.bias)
         if bias.shape not in ((), (len(self.world),)):
             raise ParameterError(
                 f"bias must be one number or one per landmark ({len(self.world)}), "
                 f"got shape {bias.shape}"
             )
-        biased = np.broadcast_to(bias, len(self.world))
-        offsets = LandmarkMap(np.stack((biased, biased)), self.world.ids, (0.0, 1.0, 0.0, 1.0))
-        object.__setattr__(self, "_offsets", offsets)
+        object.__setattr__(self, "_biases", np.broadcast_to(bias, len(self.world)))
 
     def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
         """Noise-free (but biased) ranges to landmarks: (2, K, ...)."""
         pose = require_components("pose", pose, 3)
         (dx, dy), s = _seen(self.world, ids, pose)
         return np.stack((np.hypot(dx, dy) + self._bias_of(s), s))
-
-    def sample(self, pose: Array, rng: np.random.Generator, ids: ArrayLike | None = None) -> Array:
-        """Noisy ranges to landmarks: (2, K, ...)."""
-        z = self.expected(pose, ids)
-        z[0] += draw_errors(self.sigma_r, self.nu, z[0].shape, rng)
-        return z
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one measurement (r, s) at poses (3, ...): shape (...)."""
@@ -236,4 +241,4 @@ class Range(Sensor):
         return error_density(error, self.sigma_r, self.nu)
 
     def _bias_of(self, s: ArrayLike) -> Array:
-        return self._offsets.locate(s)[0]  # type: ignore[attr-defined]
+        return self._biases[self.world.index(s)]  # type: ignore[attr-defined]

@@ -29,9 +29,8 @@ from pfkit.distance import distance_field
 from pfkit.errors import (
     DataError,
     ParameterError,
-    require_components,
     require_fraction,
-    require_positive,
+    require_positive_number,
 )
 from pfkit.occupancy import OccupancyGrid, require_grid
 from pfkit.sensors import Sensor
@@ -76,8 +75,8 @@ class LikelihoodField(Sensor):
 
     def __post_init__(self) -> None:
         require_grid(self.world)
-        require_positive("r_max", self.r_max)
-        require_positive("sigma_hit", self.sigma_hit)
+        require_positive_number("r_max", self.r_max)
+        require_positive_number("sigma_hit", self.sigma_hit)
         hit, rand = require_fraction("z_hit", self.z_hit), require_fraction("z_rand", self.z_rand)
         if not 0 < hit + rand <= 1 + 1e-9:
             raise ParameterError(f"z_hit + z_rand must be in (0, 1], got {hit + rand}")
@@ -94,7 +93,7 @@ class LikelihoodField(Sensor):
 
     def log_likelihood(self, z: ArrayLike, pose: Array) -> Array:
         """Sum of log q over the beams: z (2, K) or (2, K, B, 1), one number per pose."""
-        z = require_components("z", z, 2, DataError)
+        z = self.read(z)
         if (z[0] < 0).any():
             raise DataError(f"ranges must be >= 0, got {z[0].min()}; a lost beam reads r_max")
         x, y, theta = self.check_state(pose)

@@ -97,6 +97,10 @@ class LandmarkMap:
         UnknownLandmarkError
             If the map has no landmark of that id.
         """
+        return self.positions[:, self.index(ids)]
+
+    def index(self, ids: ArrayLike) -> NDArray[np.int64]:
+        """Where landmarks stand in the map's own order, by their ids; else as `locate`."""
         wanted = as_numbers("landmark ids", ids, UnknownLandmarkError)
         at = np.minimum(np.searchsorted(self.ids, wanted, sorter=self._order), len(self) - 1)
         index = self._order[at]
@@ -106,7 +110,7 @@ class LandmarkMap:
                 f"landmark {wanted[wrong].flat[0]:g} is not in the map, which has "
                 f"{self.ids.tolist()}; drop the measurement or add the landmark"
             )
-        return self.positions[:, index]
+        return index
 
     def sample_poses(self, shape: Shape, rng: np.random.Generator) -> NDArray[np.float64]:
         """Draw poses uniformly over the bounds, heading uniform on the circle.
@@ -119,10 +123,17 @@ class LandmarkMap:
         Returns
         -------
         array (3, *shape), metres and radians
+
+        Raises
+        ------
+        ParameterError
+            If the bounds were left out and the landmarks' own box has no area.
         """
         shape = require_shape("shape", shape)
         require_rng(rng)
         x0, x1, y0, y1 = self.bounds
+        if not (x0 < x1 and y0 < y1):
+            raise ParameterError(f"the landmarks' own box {self.bounds} has no area; give bounds")
         low = np.array((x0, y0, -np.pi)).reshape(3, *(1,) * len(shape))
         high = np.array((x1, y1, np.pi)).reshape(3, *(1,) * len(shape))
         return high - (high - low) * rng.random((3, *shape))  # heading in (-pi, pi]

@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_positive
+from pfkit.errors import ShapeError, require_positive, whole_cells
 from pfkit.estimators import mean_pose
 from pfkit.particles import Particles, normalise, require_particles
 
@@ -68,14 +68,14 @@ def clusters(bel: Particles, cell: ArrayLike = (1.0, 1.0, math.pi / 4)) -> Clust
     D = len(require_particles(bel).state)
     if bel.log_w.ndim != 1 or cell.shape != (D,):
         raise ShapeError(
-            f"clusters need one set (D, M) and cell (D,), got state {bel.state.shape} and "
-            f"cell {cell.shape}"
+            f"clusters need one set (D, M) and one cell size per component, got state "
+            f"{bel.state.shape} and cell {cell.shape}; pass cell (D,)"
         )
     size, turn = cell.copy(), 0
     if D >= 3:
         turn = math.ceil(2 * math.pi / cell[2])
         size[2] = 2 * math.pi / turn
-    at = np.floor(bel.state / size[:, None]).astype(np.int64)
+    at = whole_cells(bel.state / size[:, None])
     if turn:
         at[2] %= turn
     cells, home = np.unique(at, axis=1, return_inverse=True)

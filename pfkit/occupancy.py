@@ -29,7 +29,8 @@ from pfkit.errors import (
     Shape,
     ShapeError,
     require_finite,
-    require_positive,
+    require_fraction,
+    require_positive_number,
     require_rng,
     require_shape,
 )
@@ -70,11 +71,13 @@ class OccupancyGrid:
             raise ShapeError(f"p must have shape (rows, columns), got {p.shape}")
         if p.min() < 0 or p.max() > 1:
             raise ParameterError(f"p must hold probabilities, got {p.min()} to {p.max()}")
-        require_positive("resolution", self.resolution)
+        require_positive_number("resolution", self.resolution)
         origin = require_finite("origin", self.origin)
         if origin.shape != (3,):
             raise ShapeError(f"origin must be (x, y, yaw), got shape {origin.shape}")
-        if not 0 <= self.free_thresh <= self.occupied_thresh <= 1:
+        for name in ("free_thresh", "occupied_thresh"):
+            require_fraction(name, getattr(self, name))
+        if self.free_thresh > self.occupied_thresh:
             raise ParameterError(
                 "thresholds must satisfy 0 <= free <= occupied <= 1, got "
                 f"{self.free_thresh} and {self.occupied_thresh}"

@@ -28,6 +28,7 @@ from pfkit.errors import (
     require_fraction,
     require_positive,
     require_shape,
+    whole_cells,
 )
 from pfkit.geometry import wrap
 from pfkit.particles import Particles, normalise
@@ -103,7 +104,7 @@ class PoseGrid:
         """
         pose = require_components("pose", pose, 3)
         column = (slice(None), *(None,) * (pose.ndim - 1))
-        at = np.floor((pose - self.low[column]) / self.cell[column]).astype(np.int64)
+        at = whole_cells((pose - self.low[column]) / self.cell[column])
         n_x, n_y, n_theta = self.p.shape
         i, j = np.clip(at[0], 0, n_x - 1), np.clip(at[1], 0, n_y - 1)
         return (i * n_y + j) * n_theta + at[2] % n_theta, (i == at[0]) & (j == at[1])

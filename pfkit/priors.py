@@ -19,12 +19,11 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import (
-    ParameterError,
     Shape,
     ShapeError,
+    require_covariance,
     require_finite,
     require_method,
-    require_non_negative,
     require_rng,
     require_shape,
 )
@@ -91,16 +90,12 @@ def gaussian_prior(
     ShapeError, ParameterError
         If mean and Sigma do not match, or Sigma is not a covariance.
     """
-    mean, Sigma = require_finite("mean", mean), require_finite("Sigma", Sigma)
-    shape, D = require_shape("number of particles M", M), mean.size
+    mean, shape = require_finite("mean", mean), require_shape("number of particles M", M)
     require_rng(rng)
-    if mean.ndim != 1 or D == 0 or Sigma.shape not in ((D,), (D, D)):
-        raise ShapeError(f"mean (D,) needs Sigma (D,) or (D, D), got {mean.shape}, {Sigma.shape}")
-    if Sigma.ndim == 1:
-        Sigma = np.diag(require_non_negative("Sigma", Sigma) ** 2)
-    values, vectors = np.linalg.eigh(Sigma)
-    if not np.allclose(Sigma, Sigma.T) or values[0] < -1e-9 * max(values[-1], 1.0):
-        raise ParameterError(f"Sigma must be symmetric and positive, got eigenvalues {values}")
+    if mean.ndim != 1:
+        raise ShapeError(f"mean must have shape (D,), got {mean.shape}")
+    D = mean.size
+    values, vectors = np.linalg.eigh(require_covariance("Sigma", Sigma, D))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
     noise = np.tensordot(root, rng.standard_normal((D, *shape)), axes=1)
     state = mean.reshape(D, *(1,) * len(shape)) + noise

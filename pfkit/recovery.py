@@ -50,7 +50,7 @@ from pfkit.motion import MotionModel
 from pfkit.particles import Particles, require_particles
 from pfkit.priors import SamplesPoses
 from pfkit.resampling import Resampler, systematic
-from pfkit.sensors import SensorModel
+from pfkit.sensors import SensorModel, how_many
 
 Array = NDArray[np.float64]
 
@@ -243,7 +243,7 @@ def augmented_step(
     require_instance("memory", memory, Memory)
     if world is not None:
         require_method("world", world, "sample_poses")
-    K = 0 if z is None or np.size(z) == 0 else np.atleast_2d(z).shape[1]
+    K = how_many(z)
     bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold=1.0)
     if K == 0:
         return bel, memory, info

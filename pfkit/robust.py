@@ -18,18 +18,15 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import (
-    DataError,
-    require_components,
     require_fraction,
     require_method,
-    require_non_negative,
-    require_positive,
+    require_non_negative_number,
+    require_positive_number,
 )
 from pfkit.sensors import Sensor
 
@@ -59,10 +56,6 @@ class _Wrapper(Sensor):
     def check_state(self, pose: ArrayLike) -> Array:
         """Return a state that the wrapped sensor can read."""
         return self.sensor.check_state(pose)
-
-    def expected(self, pose: Array, **which: Any) -> Array:
-        """What an honest measurement would be."""
-        return self.sensor.expected(pose, **which)  # type: ignore[attr-defined]
 
 
 @dataclass(frozen=True)
@@ -97,7 +90,7 @@ class OutlierMixture(_Wrapper):
     def __post_init__(self) -> None:
         require_method("sensor", self.sensor, "log_density")
         require_fraction("epsilon", self.epsilon)
-        require_positive("density", self.density)
+        require_positive_number("density", self.density)
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log of the mixture for one measurement: shape (...)."""
@@ -146,7 +139,7 @@ class Gate(_Wrapper):
 
     def __post_init__(self) -> None:
         require_method("sensor", self.sensor, "log_density")
-        require_non_negative("threshold", self.threshold)
+        require_non_negative_number("threshold", self.threshold)
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one measurement, or 0 where the set rejects it: shape (...)."""
@@ -155,8 +148,7 @@ class Gate(_Wrapper):
 
     def accepts(self, z: ArrayLike, pose: Array) -> NDArray[np.bool_]:
         """Which measurements (n, K) a set of poses (3, M) lets pass: (K,), or (K, B)."""
-        z = require_components("z", z, self.components, DataError)
-        pose = self.check_state(pose)
+        z, pose = self.read(z), self.check_state(pose)
         means = [
             _mean_density(self.sensor.log_density(z[:, k], pose))[..., 0] for k in range(z.shape[1])
         ]

@@ -24,7 +24,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_non_negative, require_rng
+from pfkit.errors import ParameterError, ShapeError, require_non_negative_number, require_rng
 from pfkit.estimators import covariance, mean_pose
 from pfkit.geometry import wrap
 from pfkit.particles import Particles, require_particles
@@ -62,8 +62,7 @@ def roughen(
     """
     where = _fresh(bel, where)
     require_rng(rng)
-    if require_non_negative("K", K).ndim:
-        raise ShapeError(f"K must be one number, got shape {np.shape(K)}")
+    K = require_non_negative_number("K", K)
     deviation = _deviation(bel)
     extent = deviation.max(axis=-1) - deviation.min(axis=-1)
     scale = K * extent[..., None] * bel.M ** (-1 / len(bel.state))

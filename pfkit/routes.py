@@ -25,7 +25,7 @@ from pfkit.errors import (
     ShapeError,
     require_components,
     require_finite,
-    require_number,
+    require_positive_number,
 )
 from pfkit.geometry import wrap
 
@@ -49,7 +49,7 @@ def commands(segments: Iterable[tuple[float, float, float]], dt: float) -> Array
     ParameterError, ShapeError
         If a number is not finite, a duration is negative, or a command has not three numbers.
     """
-    dt = require_number("dt", require_finite("dt", dt), above=0.0)
+    dt = require_positive_number("dt", dt)
     if not isinstance(segments, Iterable):
         raise ShapeError(f"segments must be a list of (v, omega, seconds), got {segments!r:.40}")
     columns: list[Array] = []
@@ -108,7 +108,7 @@ class PurePursuit:
     def __post_init__(self) -> None:
         points = require_finite("points", require_components("points", self.points, 2))
         for name in ("v", "dt", "lookahead", "omega_max"):
-            require_number(name, require_finite(name, getattr(self, name)), above=0.0)
+            require_positive_number(name, getattr(self, name))
         if points.ndim != 2 or points.shape[1] < 2:
             raise ShapeError(f"points must be (2, P) with P >= 2, got {points.shape}")
         knots = np.append(points, points[:, :1], axis=1) if self.closed else points

@@ -37,7 +37,10 @@ from pfkit.errors import (
     ShapeError,
     require_components,
     require_finite,
+    require_number,
+    require_plane,
     require_positive,
+    require_positive_number,
     require_rng,
 )
 from pfkit.geometry import wrap
@@ -49,6 +52,14 @@ class SensorModel(Protocol):
     """What a filter needs of a sensor model; a class of your own drops in."""
 
     def log_likelihood(self, z: Array, pose: Array) -> Array: ...
+
+
+def how_many(z: ArrayLike | None) -> int:
+    """Number K of measurements in a set (n, K, ...): 0 for None, 1 for a single one (n,)."""
+    if z is None or np.size(z) == 0:
+        return 0
+    shape = np.shape(z)
+    return shape[1] if len(shape) > 1 else 1
 
 
 def log_gaussian(error: ArrayLike, sigma: float) -> Array:
@@ -138,6 +149,11 @@ class Sensor:
         """Return a pose (3, ...) as a finite array; sensors of other states say which."""
         return require_components("pose", pose, 3)
 
+    def read(self, z: ArrayLike) -> Array:
+        """Return measurements (n, K, ...) as a finite array; a single one (n,) is a set of one."""
+        z = require_components("z", z, self.components, DataError)
+        return z if z.ndim > 1 else z[:, None]
+
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log density of one measurement zk (n, ...) at poses (3, ...): shape (...)."""
         raise NotImplementedError
@@ -161,10 +177,7 @@ class Sensor:
         ParameterError, ShapeError
             If a pose is not finite, or does not have the components that the sensor reads.
         """
-        z = require_components("z", z, self.components, DataError)
-        pose = self.check_state(pose)
-        if z.ndim == 1:
-            z = z[:, None]
+        z, pose = self.read(z), self.check_state(pose)
         total = np.zeros(pose.shape[1:])
         together = max(1, _CACHE // max(1, total.size)) if self.broadcasts else 1
         if together == 1 or z.shape[1] == 1:
@@ -214,10 +227,7 @@ class Position(Sensor):
 
     def check_state(self, pose: ArrayLike) -> Array:
         """Return a state (D, ...), D >= 2, as a finite array."""
-        state = require_finite("state", pose)
-        if state.ndim == 0 or state.shape[0] < 2:
-            raise ShapeError(f"state must have x and y first, shape (2, ...), got {state.shape}")
-        return state
+        return require_plane(pose)
 
     def sample(self, pose: Array, rng: np.random.Generator) -> Array:
         """One noisy position: (2, 1, ...)."""
@@ -260,8 +270,8 @@ class Compass(Sensor):
     angles: ClassVar[tuple[int, ...]] = (0,)
 
     def __post_init__(self) -> None:
-        require_positive("sigma_theta", self.sigma_theta)
-        require_finite("bias", self.bias)
+        require_positive_number("sigma_theta", self.sigma_theta)
+        require_number("bias", require_finite("bias", self.bias))
         require_nu(self.nu)
 
     def expected(self, pose: Array) -> Array:

@@ -47,7 +47,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_callable, require_count
+from pfkit.errors import ParameterError, ShapeError, require_callable, require_count, require_method
 from pfkit.table import Table, from_csv, summarise, tabulate, to_csv
 
 __all__ = ["from_csv", "grid", "one_by_one", "run", "summarise", "to_csv"]
@@ -61,6 +61,9 @@ def grid(**values: Sequence[Any]) -> list[dict[str, Any]]:
 
     ``grid(M=[100, 1000], sigma_r=[0.1, 0.3])`` is a list of four settings.
     """
+    for name, some in values.items():
+        if not isinstance(some, Iterable) or isinstance(some, str):
+            raise ParameterError(f"{name} must be a list of values, got {some!r:.60}; write [...]")
     return [
         dict(zip(values, combination, strict=True))
         for combination in itertools.product(*values.values())
@@ -83,6 +86,8 @@ class one_by_one:
     def __call__(self, rng: np.random.Generator, B: int, **setting: Any) -> dict[str, list[float]]:
         """Perform B runs one after the other."""
         rows = [self.function(stream, **setting) for stream in rng.spawn(B)]
+        if not all(isinstance(row, Mapping) for row in rows):
+            raise ParameterError(f"a run must return {{name: number}}, got {rows[0]!r:.60}")
         return {name: [row[name] for row in rows] for name in rows[0]}
 
 
@@ -125,6 +130,8 @@ def run(
     """
     require_callable("experiment", experiment)
     settings, seed = _check_settings(settings), require_count("seed", seed, 0)
+    if executor is not None:
+        require_method("executor", executor, "submit")
     runs, block = require_count("runs", runs), require_count("block", block)
     first = range(0, runs, block)
     tasks = [
@@ -149,9 +156,10 @@ def _one_block(
     """Block i of a setting; everything it needs travels with it."""
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(i,)))
     try:
-        result = {
-            name: np.asarray(column) for name, column in experiment(rng, B, **setting).items()
-        }
+        returned = experiment(rng, B, **setting)
+        if not isinstance(returned, Mapping) or not returned:
+            raise ParameterError(f"an experiment must return {{name: (B,)}}, got {returned!r:.60}")
+        result = {name: np.asarray(column) for name, column in returned.items()}
     except Exception as error:
         error.add_note(f"in block {i} of setting {dict(setting)}")
         raise

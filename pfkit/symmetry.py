@@ -56,7 +56,8 @@ def symmetries(world: LandmarkMap, tolerance: float = 1e-6, mirror: bool = False
     Raises
     ------
     ParameterError
-        If there is one landmark only: then every turn about it is a symmetry.
+        If there is one landmark only: then every turn about it is a symmetry. Or if two stand
+        at the same place.
 
     Notes
     -----
@@ -67,9 +68,12 @@ def symmetries(world: LandmarkMap, tolerance: float = 1e-6, mirror: bool = False
     if len(world) < 2:
         raise ParameterError("one landmark has a whole circle of symmetries; need at least two")
     m = world.positions[0] + 1j * world.positions[1]
+    apart = np.abs(m[:, None] - m)
+    if np.count_nonzero(apart < tolerance) > m.size:
+        raise ParameterError(f"two landmarks are less than {tolerance} m apart; merge them")
     source = m.conj() if mirror else m
     side = source[1] - source[0]
-    i, j = np.nonzero(np.abs(np.abs(m[:, None] - m) - np.abs(side)) < tolerance)
+    i, j = np.nonzero(np.abs(apart - np.abs(side)) < tolerance)
     keep = i != j
     i, j = i[keep], j[keep]
     turn = (m[j] - m[i]) / side

@@ -88,6 +88,8 @@ def summarise(
     unknown = [name for name in (*by, value) if str(name) not in names]
     if unknown:
         raise ParameterError(f"no column {unknown[0]!r}; the table has {names}")
+    if taken := {"runs", "value", "low", "high"} & set(by):
+        raise ParameterError(f"the summary has a column {min(taken)!r} of its own; rename yours")
     groups: dict[tuple, list[int]] = {}
     for i, row in enumerate(table):
         groups.setdefault(tuple(row[name] for name in by), []).append(i)
@@ -118,10 +120,14 @@ def from_csv(path: str | os.PathLike[str]) -> Table:
     Raises
     ------
     DataError
-        If the file is empty or a row has another number of fields than the header.
+        If the file cannot be read, is empty, or a row has another number of fields than the
+        header.
     """
-    with open(path, newline="", encoding="utf-8") as file:
-        rows = list(csv.reader(file))
+    try:
+        with open(path, newline="", encoding="utf-8") as file:
+            rows = list(csv.reader(file))
+    except OSError as problem:
+        raise DataError(f"{path}: cannot be read ({problem.strerror}); check the path") from None
     if len(rows) < 2:
         raise DataError(f"{path} holds no rows; was it written by study.to_csv?")
     for number, row in enumerate(rows[1:], start=2):

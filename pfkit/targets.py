@@ -26,7 +26,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import require_components, require_finite, require_non_negative, require_rng
+from pfkit.errors import (
+    require_components,
+    require_finite,
+    require_non_negative_number,
+    require_number,
+    require_plane,
+    require_rng,
+)
 from pfkit.geometry import wrap
 
 Array = NDArray[np.float64]
@@ -53,13 +60,12 @@ class FixedTarget:
     sigma_theta: float = 0.0
 
     def __post_init__(self) -> None:
-        require_non_negative("sigma", self.sigma)
-        require_non_negative("sigma_theta", self.sigma_theta)
-        require_finite("heading", getattr(self, "heading", 0.0))  # only `HeadingTarget` has one
+        require_non_negative_number("sigma", self.sigma)
+        require_non_negative_number("sigma_theta", self.sigma_theta)
 
     def mean(self, state: ArrayLike, u: ArrayLike) -> Array:
         """Where the state (D, ...) goes without noise under u = (v, omega, dt)."""
-        return require_finite("state", state).copy()
+        return require_plane(state).copy()
 
     def sample(self, state: ArrayLike, u: ArrayLike, rng: np.random.Generator) -> Array:
         """One noisy step of every state (D, ...): fresh noise for each particle."""
@@ -95,8 +101,12 @@ class HeadingTarget(FixedTarget):
 
     heading: float = 0.0
 
+    def __post_init__(self) -> None:
+        super().__post_init__()
+        require_number("heading", require_finite("heading", self.heading))
+
     def mean(self, state: ArrayLike, u: ArrayLike) -> Array:
-        return _ahead(require_finite("state", state), self.heading, u)
+        return _ahead(require_plane(state), self.heading, u)
 
 
 @dataclass(frozen=True)

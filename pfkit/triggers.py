@@ -32,7 +32,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import require_count, require_fraction, require_non_negative
+from pfkit.errors import require_count, require_fraction, require_non_negative_number
 from pfkit.particles import Particles, require_particles
 
 Trigger = Callable[[Particles, int], "bool | np.bool_ | NDArray[np.bool_]"]
@@ -102,7 +102,7 @@ def on_information(nats: float) -> Trigger:
     ParameterError
         If nats is negative or not finite.
     """
-    level = float(require_non_negative("nats", nats))
+    level = require_non_negative_number("nats", nats)
     return lambda bel, k: information(bel) > level
 
 

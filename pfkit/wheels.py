@@ -24,8 +24,9 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     ParameterError,
     require_components,
-    require_non_negative,
-    require_positive,
+    require_finite,
+    require_non_negative_number,
+    require_positive_number,
 )
 from pfkit.motion import draw_noise, drive_arc
 
@@ -67,13 +68,13 @@ class DifferentialDrive:
 
     def __post_init__(self) -> None:
         for name in ("r", "L"):
-            require_positive(name, getattr(self, name))
+            require_positive_number(name, getattr(self, name))
         for name in ("alpha", "sigma_v", "sigma_omega"):
-            require_non_negative(name, getattr(self, name))
+            require_non_negative_number(name, getattr(self, name))
 
     def body_speed(self, left: ArrayLike, right: ArrayLike) -> tuple[Array, Array]:
         """Speed v (m/s) and turn rate omega (rad/s) from wheel speeds in rad/s."""
-        left, right = np.asarray(left, dtype=float), np.asarray(right, dtype=float)
+        left, right = require_finite("left", left), require_finite("right", right)
         return 0.5 * self.r * (right + left), self.r / self.L * (right - left)
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
@@ -127,9 +128,9 @@ class Bicycle:
     sigma_delta: float = 0.02
 
     def __post_init__(self) -> None:
-        require_positive("L", self.L)
-        require_non_negative("alpha", self.alpha)
-        require_non_negative("sigma_delta", self.sigma_delta)
+        require_positive_number("L", self.L)
+        require_non_negative_number("alpha", self.alpha)
+        require_non_negative_number("sigma_delta", self.sigma_delta)
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free arc: pose (3, ...), u (3,) -> pose (3, ...)."""

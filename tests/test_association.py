@@ -32,7 +32,7 @@ def test_at_the_truth_it_is_as_sure_as_with_names():
     pose = np.array((1.0, 0.5, 0.3))
     free = pf.MaximumLikelihood(SENSORS[2])
     named = SENSORS[2].expected(pose)
-    assert free.log_likelihood(free.expected(pose), pose) == pytest.approx(
+    assert free.log_likelihood(named[:-1], pose) == pytest.approx(
         SENSORS[2].log_likelihood(named, pose)
     )
     assert free.components == 2
@@ -61,7 +61,7 @@ def test_a_set_for_each_filter_of_a_batch():
 def test_the_gate_goes_about_it():
     pose = np.random.default_rng(4).normal((1.0, 0.5, 0.3), 0.05, (50, 3)).T
     gated = pf.Gate(pf.MaximumLikelihood(SENSORS[2]), 1e-4)
-    z = gated.expected(np.array((1.0, 0.5, 0.3)))
+    z = SENSORS[2].expected(np.array((1.0, 0.5, 0.3)))[:-1]
     z = np.hstack((z, [[20.0], [0.0]]))
     np.testing.assert_array_equal(gated.accepts(z, pose), (True, True, True, False))
 

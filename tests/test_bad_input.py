@@ -43,9 +43,14 @@ BAD: dict[str, list[tuple[Any, str]]] = {
         ([1, 2, 1j], "1j"),
     ],
     "control": [("go", "go"), (np.zeros(5), "(5,)"), ([NAN, 0.1, 0.1], "nan"), (1.0, "()")],
-    "positive": [(0.0, "0"), (-1.0, "-1"), (NAN, "nan"), (INF, "inf"), ("wide", "wide")],
+    "positive": [
+        *[(0.0, "0"), (-1.0, "-1"), (NAN, "nan"), (INF, "inf"), ("wide", "wide")],
+        ([1.0, 2.0], "2"),
+    ],
+    "one or two": [(0.0, "0"), (NAN, "nan"), ("wide", "wide"), ([1.0, 2.0, 3.0], "(3,)")],
     "positive or inf": [(0.0, "0"), (-1.0, "-1"), (NAN, "nan"), ("wide", "wide")],
-    "non-negative": [(-1.0, "-1"), (NAN, "nan"), ("wide", "wide")],
+    "non-negative": [(-1.0, "-1"), (NAN, "nan"), ("wide", "wide"), ([1.0, 2.0], "2")],
+    "at least 0": [(-1.0, "-1"), (NAN, "nan"), ("wide", "wide")],
     "fraction": [(-0.1, "-0.1"), (1.1, "1.1"), (NAN, "nan"), ("half", "half")],
     "level": [(0.0, "0"), (1.0, "1"), (NAN, "nan"), ("most", "most")],
     "count": [(0, "0"), (-1, "-1"), (2.5, "2.5"), (True, "True"), ("many", "many")],
@@ -126,7 +131,10 @@ BAD: dict[str, list[tuple[Any, str]]] = {
         ("a", "a"),
     ],
     "errors": [([[0.0, NAN], [0.0, 1.0]], "nan"), ("a", "a"), (0.0, "()")],
-    "covariance": [([[1.0, 2.0], [2.0, 1.0]], "1"), ([[NAN, 0], [0, 1]], "nan"), ("a", "a")],
+    "covariance": [
+        *[([[1.0, 2.0], [2.0, 1.0]], "1"), ([[NAN, 0], [0, 1]], "nan"), ("a", "a")],
+        *[((-1.0, 1.0), "-1"), (np.eye(3), "(3, 3)"), ([[1.0, 0.5], [0.0, 1.0]], "0.5")],
+    ],
     "scores": [([1.0, NAN, 2.0], "nan"), ([], "(0,)"), ("a", "a")],
     "probabilities": [([0.5, -0.5, 1.0], "-0.5"), ([NAN, 1.0], "nan"), ([], "(0,)"), ("a", "a")],
     "key": [("lottery", "lottery"), (None, "None")],
@@ -244,7 +252,7 @@ TABLE: dict[str, Row] = {
         pf.Compass,
         dict(sigma_theta=one, bias=(0.0, "number"), nu=(3.0, "positive or inf")),
     ),
-    "Position": (pf.Position, dict(sigma=one)),
+    "Position": (pf.Position, dict(sigma=(1.0, "one or two"))),
     "OutlierMixture": (
         pf.OutlierMixture,
         dict(sensor=sensor, epsilon=half, density=one),
@@ -298,10 +306,10 @@ for name, model in MOTIONS.items():
     TABLE[f"{name}.mean"] = model.mean, dict(pose=pose, u=u)
     TABLE[f"{name}.sample"] = model.sample, dict(pose=pose, u=u, rng=r)
 for name, model in SENSORS.items():
-    TABLE[f"{name}.expected"] = model.expected, dict(pose=pose)
     if hasattr(model, "sample"):
+        TABLE[f"{name}.expected"] = model.expected, dict(pose=pose)
         TABLE[f"{name}.sample"] = model.sample, dict(pose=pose, rng=r)
-    seen = model.expected(POSE)
+    seen = model.expected(POSE) if hasattr(model, "sample") else Z
     BAD[f"z of {name}"] = [
         ("near", "near"),
         (np.zeros((4, 2)), "(4, 2)"),
@@ -531,7 +539,7 @@ TABLE |= {
     "regularise": (pf.regularise, dict(bel=bel, rng=r)),
     "tempered_update": (
         pf.tempered_update,
-        dict(bel=bel, z=z, sensor=sensor, rng=r, keep=half, kernel=(0.3, "non-negative")),
+        dict(bel=bel, z=z, sensor=sensor, rng=r, keep=half, kernel=(0.3, "at least 0")),
     ),
     # L4
     "pose_error": (pf.pose_error, estimate),

@@ -71,13 +71,21 @@ def test_moving_map_and_robot_together_changes_nothing():
     )
 
 
-def test_samples_follow_the_distribution():
-    """Kolmogorov's distance of 20,000 readings from the integral; false-fail below 1e-4."""
+@pytest.mark.parametrize(("back", "low", "high"), [(0.0, 1.0, 4.5), (0.1, 0.0999, 0.1001)])
+def test_samples_follow_the_distribution(back, low, high):
+    """Kolmogorov's distance of 20,000 readings from the integral; false-fail below 1e-4.
+
+    Once in the open, and once so near the wall that a quarter of the hits would lie behind the
+    sensor.
+    """
     M = 20_000
-    pose = np.tile(np.array((4.0, 2.0, 0.5))[:, None], M)
-    laser = replace(LASER, directions=(0.4,))
+    laser, pose = replace(LASER, directions=(0.4,)), np.array((4.0, 2.0, 0.5))
+    if back:  # stand this far before the wall
+        ahead = float(laser.lengths(pose)[0]) - back
+        pose[:2] += ahead * np.array((math.cos(0.9), math.sin(0.9)))
+    pose = np.tile(pose[:, None], M)
     length = float(laser.lengths(pose[:, 0])[0])
-    assert 1.0 < length < 4.5
+    assert low < length < high
     z = np.sort(laser.sample(pose, np.random.default_rng(3))[0, 0])
     r = (np.arange(50_000) + 0.5) * 5.0 / 50_000
     cdf = np.cumsum(laser.shares @ laser.parts(r, length)) * 5.0 / 50_000

@@ -35,6 +35,7 @@ def test_chi2_agrees_with_draws_and_knows_its_limits():
         p = pf.chi2_tail(level, 5)
         assert abs(np.mean(x > level) - p) < 4.5 * math.sqrt(p * (1 - p) / x.size)
     assert pf.chi2_tail(-1.0, 3) == 1.0
+    assert [pf.chi2_tail(math.inf, k) for k in (1, 2, 3, 8)] == [0.0] * 4
     assert pf.chi2_quantile(0.0, 3) == pytest.approx(0.0, abs=1e-9)
     with pytest.raises(pf.ParameterError):
         pf.chi2_quantile(1.0, 3)

@@ -136,9 +136,22 @@ def test_nothing_measured_changes_nothing():
         assert result == (START, 0.0, 0)
 
 
+@pytest.mark.parametrize(
+    "wrap", [pf.Intermittent, pf.MaximumLikelihood, lambda s: pf.Tempered(s, 0.5)]
+)
+def test_a_wrapper_has_no_gaussian_of_its_own(wrap):
+    """Nor may it be read as the sensor that it wraps: its columns name no landmark."""
+    sensor = wrap(pf.RangeBearing(WORLD, 0.3, 0.1))
+    with pytest.raises(pf.ParameterError, match="the sensor it wraps"):
+        pf.gaussian_update(START, np.ones((sensor.components, 2)), sensor)
+
+
 def test_noise_that_is_not_gaussian_is_named():
     with pytest.raises(pf.ParameterError, match="standard_t"):
         pf.gaussian_update(START, [[3.0], [0]], pf.Range(WORLD, 0.3, nu=3.0))
+    laser = pf.BeamModel(pf.worlds.office(), [0.0], 8.0)
+    with pytest.raises(pf.ParameterError, match="random"):
+        pf.gaussian_update(START, [[3.0], [0]], laser)
     mixture = pf.OutlierMixture(pf.Range(WORLD, 0.3), 0.1, 0.1)
     with pytest.raises(pf.ParameterError, match="gate"):
         pf.gaussian_update(START, [[3.0], [0]], mixture)

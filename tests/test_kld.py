@@ -96,6 +96,8 @@ def test_without_a_measurement_the_cloud_only_moves():
         (lambda: pf.kld_bound(0), pf.ParameterError),
         (lambda: pf.kld_bound(2.5), pf.ParameterError),
         (lambda: pf.kld_bound(5, epsilon=0.0), pf.ParameterError),
+        (lambda: pf.kld_bound(5, epsilon=1e-300), pf.ParameterError),
+        (lambda: pf.kld_count(np.ones((3, 5)), (1e-300, 1, 1)), pf.ParameterError),
         (lambda: pf.kld_bound(5, delta=1.0), pf.ParameterError),
         (lambda: pf.kld_count(np.ones((3, 2, 5))), pf.ShapeError),
         (lambda: pf.kld_count(np.ones((2, 5))), pf.ShapeError),

@@ -81,3 +81,10 @@ def test_bad_input_is_named():
         FIELD.log_likelihood([[-1.0], [0.0]], np.zeros((3, 2)))
     with pytest.raises(pf.DataError, match="z"):
         FIELD.log_likelihood([[np.inf], [0.0]], np.zeros((3, 2)))
+
+
+def test_a_single_reading_is_a_set_of_one():
+    pose, z = ROOM.sample_poses(9, np.random.default_rng(6)), np.array((1.5, 0.3))
+    for sensor in (FIELD, LASER):
+        one = sensor.log_likelihood(z, pose)
+        np.testing.assert_array_equal(one, sensor.log_likelihood(z[:, None], pose))

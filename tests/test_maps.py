@@ -65,3 +65,13 @@ def test_poses_are_drawn_inside():
     assert theta.max() <= np.pi and theta.min() > -np.pi
     np.testing.assert_array_equal(world.contains([-1.1, -1.0], 0.0), [False, True])
     np.testing.assert_array_equal(world.contains(0.0, [4.0, 4.1]), [True, False])
+
+
+def test_a_box_without_area_is_no_place_to_draw_from():
+    with pytest.raises(pf.ParameterError, match="give bounds"):
+        pf.LandmarkMap([[0.0, 4.0], [1.0, 1.0]]).sample_poses(3, np.random.default_rng(0))
+
+
+def test_index_is_where_a_landmark_stands():
+    world = pf.LandmarkMap([[0.0, 4.0, 2.0], [1.0, 1.0, 5.0]], ids=[7, 2, 5])
+    np.testing.assert_array_equal(world.index([[5, 7], [2, 2]]), [[2, 0], [1, 1]])

@@ -54,7 +54,7 @@ def test_a_plane_has_no_circle():
     assert pf.clusters(pf.from_weights(state), (1, 1)).mean.shape == (2, 1)
 
 
-@pytest.mark.parametrize("cell", [(1, 1), (1, 1, 0), (1, 1, np.nan)])
+@pytest.mark.parametrize("cell", [(1, 1), (1, 1, 0), (1, 1, np.nan), (1e-300, 1, 1)])
 def test_bad_cells_are_named(cell):
     with pytest.raises(pf.PfkitError):
         pf.clusters(pf.from_weights(heap((0, 0, 0), 9, 0)), cell)

@@ -112,6 +112,17 @@ def test_without_a_measurement_nothing_is_remembered():
     assert after is memory and not info.resampled
 
 
+def test_a_single_measurement_counts_as_one():
+    """(3,) and (3, 1) are the same set: memory divides the evidence by K = 1."""
+    bel = pf.gaussian_prior(50, (2, 2, 0), (1, 1, 1), rng())
+    z = SENSOR.expected(np.array((2.0, 2.0, 0.0)), ids=[0])
+    arguments = (bel, pf.Memory(), (1, 0, 1))
+    one, two = (
+        pf.augmented_step(*arguments, zk, MOTION, SENSOR, rng(), WORLD)[1] for zk in (z, z[:, 0])
+    )
+    assert one == two
+
+
 @pytest.mark.parametrize(
     "call, error",
     [

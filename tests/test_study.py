@@ -153,6 +153,10 @@ def test_the_bar_counts_blocks_on_stderr(capsys):
         ({"block": 0}, pf.ParameterError),
         ({"experiment": lambda rng, B, **s: {"value": np.zeros(B + 1)}}, pf.ShapeError),
         ({"experiment": lambda rng, B, **s: {"value": 1.0}}, pf.ShapeError),
+        ({"experiment": lambda rng, B, **s: np.zeros(B)}, pf.ParameterError),
+        ({"experiment": lambda rng, B, **s: {}}, pf.ParameterError),
+        ({"experiment": study.one_by_one(lambda rng, **s: 1.0)}, pf.ParameterError),
+        ({"executor": "pool"}, pf.ParameterError),
     ],
 )
 def test_bad_input_is_named(change, error):
@@ -163,3 +167,8 @@ def test_bad_input_is_named(change, error):
     }
     with pytest.raises(error):
         study.run(**(good | change))
+
+
+def test_a_setting_that_is_no_list_is_named():
+    with pytest.raises(pf.ParameterError, match="M must be a list"):
+        study.grid(M=100)

@@ -96,6 +96,11 @@ def test_one_landmark_is_refused():
         pf.symmetries(worlds.one_landmark())
 
 
+def test_landmarks_at_one_place_are_refused():
+    with pytest.raises(pf.ParameterError, match="merge"):
+        pf.symmetries(pf.LandmarkMap([[0.0, 1.0, 1.0], [0.0, 0.0, 0.0]]))
+
+
 def test_hypothesis_mass_counts_weight_near_each_candidate():
     bel = pf.from_weights(
         [[0.0, 0.1, 5.0, 9.0], [0.0, 0.0, 0.0, 0.0], [0.0, 3.0, 0.0, 0.0]], [0.4, 0.3, 0.2, 0.1]

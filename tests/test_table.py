@@ -40,6 +40,8 @@ def test_a_damaged_csv_is_named(tmp_path):
     path.write_text("a,b\n1,2\n3\n")
     with pytest.raises(pf.DataError, match="line 3"):
         study.from_csv(path)
+    with pytest.raises(pf.DataError, match="cannot be read"):
+        study.from_csv(tmp_path / "none.csv")
     path.write_text("")
     with pytest.raises(pf.DataError, match="no rows"):
         study.from_csv(path)
@@ -65,3 +67,8 @@ def test_columns_must_have_one_length():
 def test_an_unknown_column_is_named(table):
     with pytest.raises(pf.ParameterError, match="no column 'size'"):
         pf.summarise(table, "size")
+
+
+def test_a_summary_does_not_overwrite_a_column():
+    with pytest.raises(pf.ParameterError, match="rename"):
+        pf.summarise(pf.tabulate({"runs": [1, 1], "a": [1.0, 2.0]}), "a", by="runs")
