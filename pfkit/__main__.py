@@ -1,18 +1,32 @@
-"""``python -m pfkit localise FOLDER``: localise a recorded robot from the command line."""
+"""``python -m pfkit localise FOLDER``: localise a recorded robot from the command line.
+
+A log without ground truth is localised, too, from a global start; there is then nothing to score.
+"""
 
 from __future__ import annotations
 
 import argparse
 import sys
+import tempfile
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any, NoReturn
 
 import numpy as np
 
+from pfkit.calibration import Calibration
 from pfkit.datasets import load_log
 from pfkit.errors import ParameterError, PfkitError
-from pfkit.localise import Score, Track, calibrate_first, localise, reckon, score, settings_for
+from pfkit.localise import (
+    Score,
+    Track,
+    calibrate_first,
+    localise,
+    reckon,
+    score,
+    scored_steps,
+    settings_for,
+)
 from pfkit.log import Log
 
 
@@ -58,6 +72,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     except (PfkitError, OSError) as error:
         print(f"pfkit: {' '.join(str(error).split())}", file=sys.stderr)
         return 2
+    except MemoryError:
+        print("pfkit: not enough memory for so many --particles; take fewer", file=sys.stderr)
+        return 2
+    except KeyboardInterrupt:
+        print("\npfkit: interrupted", file=sys.stderr)
+        return 130
     return 0
 
 
@@ -65,25 +85,45 @@ def run(args: argparse.Namespace) -> None:
     """Load, calibrate, filter, score, write."""
     if args.seed < 0:
         raise ParameterError(f"--seed must be >= 0, got {args.seed}")
-    log = load_log(args.folder, args.robot, args.drop_unknown)
+    need_truth = args.start == "known" or bool(args.calibrate)
+    log = load_log(args.folder, args.robot, args.drop_unknown, need_truth)
     print(log)
-    seconds = args.calibrate
-    if seconds is None:
-        seconds = (log.t[-1] - log.t[0]) / 3 if settings_for(log).sensor.components == 2 else 0.0
-    calibration = calibrate_first(log, seconds) if seconds != 0 else None
-    if calibration is not None:
-        print(f"calibrated on the first {seconds:.0f} s: {calibration}")
+    _require_writable(args.out)
+    calibration = _calibration(log, args.calibrate)
     settings = settings_for(log, calibration)
     corrected = log if calibration is None else calibration.apply(log)
     rng = np.random.default_rng(args.seed)
     track = localise(
         corrected, rng, args.start, args.particles, settings=settings, watch=_progress()
     )
-    _report(log, track, args.start, settings.limit)
-    args.out.mkdir(parents=True, exist_ok=True)
     write_track(args.out / "track.csv", log, track)
+    _report(log, track, args.start, settings.limit)
     print(f"wrote {args.out / 'track.csv'}")
     _draw(args.out / "track.png", log, track.estimate[..., 0])
+
+
+def _require_writable(folder: Path) -> None:
+    """Make the output folder and try it, before anybody waits for a result."""
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryFile(dir=folder):
+            pass
+    except OSError as error:
+        raise ParameterError(
+            f"--out: cannot write into {folder} ({error.strerror}); name another folder"
+        ) from None
+
+
+def _calibration(log: Log, seconds: float | None) -> Calibration | None:
+    """Calibrate on the first seconds; if they are not given, only ranges whose truth is known."""
+    if seconds is None:
+        ranges_only = settings_for(log).sensor.components == 2
+        seconds = (log.t[-1] - log.t[0]) / 3 if ranges_only and log.truth is not None else 0.0
+    if seconds == 0:
+        return None
+    calibration = calibrate_first(log, seconds)
+    print(f"calibrated on the first {min(seconds, log.t[-1]):.0f} s: {calibration}")
+    return calibration
 
 
 def _progress() -> Callable[[int, int], None]:
@@ -102,18 +142,25 @@ def _progress() -> Callable[[int, int], None]:
 
 
 def _report(log: Log, track: Track, start: str, limit: float) -> None:
-    """Print the table."""
+    """Print the table, and how fast it was."""
     since = track.first if start == "global" else -np.inf
+    if scored_steps(log, since).any():
+        _print_errors(log, track, limit, since)
+    else:
+        print("no ground truth: the errors are unknown; the sd in track.csv is the filter's own")
+    print(f"{len(log) / track.seconds:,.0f} steps/s ({len(log):,} steps in {track.seconds:.2f} s)")
+
+
+def _print_errors(log: Log, track: Track, limit: float, since: float) -> None:
     print(f"{'':16}{'RMSE [m]':>10}{'median':>9}{'95 %':>9}{'heading RMSE [deg]':>20}")
     if log.start is not None:
         _row("dead reckoning", score(log, reckon(log), limit, since))
     own = score(log, track.estimate[..., 0], limit, since)
     _row("filter", own)
-    if start == "global":
+    if np.isfinite(since):
         print(f"errors from the first measurement on, at {track.first:.1f} s")
     when = f"{own.converged:.1f} s" if np.isfinite(own.converged) else "never"
     print(f"error below {limit:g} m for good from: {when}")
-    print(f"{len(log) / track.seconds:,.0f} steps/s ({len(log):,} steps in {track.seconds:.2f} s)")
 
 
 def _row(name: str, s: Score) -> None:

@@ -228,6 +228,14 @@ class Score(NamedTuple):
     converged: Array
 
 
+def scored_steps(log: Log, since: float = -np.inf) -> NDArray[np.bool_]:
+    """Steps (T,) at which errors count: odometry stamps with a known truth, from `since` on."""
+    if log.truth is None:
+        return np.zeros(len(log), dtype=bool)
+    known = np.isfinite(log.truth).all(axis=0) & (log.t >= since)
+    return known if log.scored is None else known & log.scored
+
+
 def score(log: Log, estimate: Array, limit: float, since: float = -np.inf) -> Score:
     """Compare estimates with the truth, at the odometry stamps where there is one.
 
@@ -241,14 +249,15 @@ def score(log: Log, estimate: Array, limit: float, since: float = -np.inf) -> Sc
     Returns
     -------
     Score
+
+    Raises
+    ------
+    DataError
+        If the log has no truth at any step that counts.
     """
-    if log.truth is None:
-        raise DataError("the log has no truth to compare with")
-    known = np.isfinite(log.truth).all(axis=0)
-    if log.scored is not None:
-        known &= log.scored
-    if not (known & (log.t >= since)).any():
-        raise DataError("the log has no truth at any odometry stamp that is to be scored")
+    if log.truth is None or not scored_steps(log, since).any():
+        raise DataError("the log has no truth at any step that is to be scored")
+    known = scored_steps(log)
     error = pose_error(estimate[:, known], log.truth[:, known])
     distance = np.hypot(error[0], error[1])
     late = log.t[known] >= since

@@ -175,15 +175,41 @@ def test_an_unknown_bar_code_is_named_or_dropped(folder):
 @pytest.mark.parametrize(
     ("name", "text", "reason"),
     [
-        ("Barcodes.dat", "1 5\n10 5\n19 25\n", "listed twice"),
+        ("Barcodes.dat", "1 5\n10 5\n19 25\n", "line 2: bar code 5 is listed twice"),
+        ("Barcodes.dat", "1 5\n10 6.5\n19 25\n", "line 2: bar code must be whole"),
         ("Barcodes.dat", "1 5\n10.5 63\n19 25\n", "line 2: subject must be whole"),
-        ("Landmark_Groundtruth.dat", "10 1 2 0 0\n10 1 2 0 0\n", "different integers"),
+        ("Landmark_Groundtruth.dat", "#\n10 1 2 0 0\n10 1 2 0 0\n", "line 3: subject 10 is listed"),
+        ("Landmark_Groundtruth.dat", "10 1e20 2 0 0\n", "line 1: x is 1e20, which is absurd"),
+        ("Robot1_Odometry.dat", "1.7e18 0 0\n", "line 1: time is 1.7e18, which is absurd"),
+        ("Robot1_Measurement.dat", "10.25 63 -2.0 0.5\n", "line 1: range must be >= 0, got -2"),
     ],
 )
 def test_tables_must_make_sense(folder, name, text, reason):
     (folder / name).write_text(text)
-    with pytest.raises(pf.PfkitError, match=reason):
+    with pytest.raises(pf.DataError, match=rf"{name}, {reason}"):
         load_mrclam(folder)
+
+
+def test_a_log_without_truth_is_read_if_none_is_needed(folder):
+    expected = load_mrclam(folder)
+    (folder / "Robot1_Groundtruth.dat").unlink()
+    with pytest.raises(pf.DataError, match=r"Groundtruth.dat: no such file.*--start global"):
+        load_log(folder)
+    log = load_log(folder, need_truth=False)
+    assert log.truth is None and log.start is None
+    np.testing.assert_array_equal(log.u, expected.u)
+    assert [zk.shape for zk in log.z] == [zk.shape for zk in expected.z]
+
+
+def test_plaza_without_truth_is_the_same_drive(tmp_path):
+    shutil.copytree(DATA / "plaza2", tmp_path / "p")
+    (tmp_path / "p" / "truth.txt").unlink()
+    with pytest.raises(pf.DataError, match="global"):
+        load_plaza(tmp_path / "p")
+    log, known = load_plaza(tmp_path / "p", need_truth=False), load_plaza(DATA / "plaza2")
+    assert log.truth is None
+    way, expected = ((one.u[:2] * one.u[2]).sum(axis=1) for one in (log, known))
+    np.testing.assert_allclose(way, expected, rtol=1e-3)
 
 
 def test_a_file_that_is_no_text(folder):
@@ -244,11 +270,28 @@ def test_plaza_starts_where_the_truth_starts_and_looks_ahead():
     assert driven == pytest.approx(1354, abs=10)
 
 
-def test_plaza_names_an_unknown_beacon(tmp_path):
+@pytest.mark.parametrize(
+    ("name", "row", "reason"),
+    [
+        ("ranges.txt", "3700 2 77 10.0", "line 1818: beacon 77"),
+        ("ranges.txt", "3700 2 1 -10.0", "line 1818: range must be >= 0"),
+        ("beacons.txt", "1.5 0 0", "line 6: beacon must be whole"),
+        ("beacons.txt", "1 0 0", "line 6: beacon 1 is listed twice"),
+    ],
+)
+def test_plaza_names_a_row_that_makes_no_sense(tmp_path, name, row, reason):
     shutil.copytree(DATA / "plaza2", tmp_path / "p")
-    with (tmp_path / "p" / "ranges.txt").open("a") as file:
-        file.write("3700 2 77 10.0\n")
-    with pytest.raises(pf.DataError, match=r"ranges.txt, line 1818: beacon 77"):
+    with (tmp_path / "p" / name).open("a") as file:
+        file.write(row + "\n")
+    with pytest.raises(pf.DataError, match=rf"{name}, {reason}"):
+        load_plaza(tmp_path / "p")
+
+
+def test_plaza_needs_time_to_pass(tmp_path):
+    shutil.copytree(DATA / "plaza2", tmp_path / "p")
+    path = tmp_path / "p" / "odometry.txt"
+    path.write_text(path.read_text() + path.read_text().splitlines()[-1] + "\n")
+    with pytest.raises(pf.DataError, match=r"odometry.txt, line \d+: no time passed"):
         load_plaza(tmp_path / "p")
 
 

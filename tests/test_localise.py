@@ -121,6 +121,50 @@ def test_the_command_calibrates_and_starts_anywhere(tmp_path, capsys):
     assert "delay" in out and "from the first measurement on" in out
 
 
+TRUTH = {"mrclam_twin": "Robot1_Groundtruth.dat", "plaza2": "truth.txt"}
+
+
+@pytest.mark.parametrize("name", TRUTH)
+def test_the_command_localises_a_log_without_truth(tmp_path, capsys, name):
+    shutil.copytree(DATA / name, tmp_path / "log")
+    (tmp_path / "log" / TRUTH[name]).unlink()
+    line = f"localise {tmp_path / 'log'} --start global --particles 200 --out {tmp_path / 'o'}"
+    assert main(line.split()) == 0
+    out = capsys.readouterr().out
+    assert "no ground truth" in out and "RMSE" not in out
+    assert np.isfinite(np.loadtxt(tmp_path / "o" / "track.csv", delimiter=",", skiprows=1)).all()
+    assert (tmp_path / "o" / "track.png").stat().st_size > 5000
+
+
+def test_a_truth_of_another_day_does_not_cost_the_track(tmp_path, capsys):
+    shutil.copytree(DATA / "mrclam_twin", tmp_path / "log")
+    path = tmp_path / "log" / "Robot1_Groundtruth.dat"
+    table = np.loadtxt(path)
+    table[:, 0] += 1e6
+    np.savetxt(path, table, "%.3f")
+    line = f"localise {tmp_path / 'log'} --start global --particles 200 --out {tmp_path / 'o'}"
+    assert main(line.split()) == 0
+    assert "no ground truth" in capsys.readouterr().out
+    assert (tmp_path / "o" / "track.csv").stat().st_size > 5000
+
+
+def test_an_interruption_is_one_line(monkeypatch, capsys, tmp_path):
+    def interrupted(*args, **options):
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("pfkit.__main__.localise", interrupted)
+    assert main(["localise", str(DATA / "mrclam_twin"), "--out", str(tmp_path)]) == 130
+    assert capsys.readouterr().err.split() == ["pfkit:", "interrupted"]
+
+
+def test_the_output_folder_is_tried_before_the_work(monkeypatch, capsys, tmp_path):
+    monkeypatch.setattr("pfkit.__main__.localise", lambda *args, **options: pytest.fail("too late"))
+    (tmp_path / "taken").write_text("")
+    line = f"localise {DATA / 'mrclam_twin'} --out {tmp_path / 'taken'}"
+    assert main(line.split()) == 2
+    assert "--out" in capsys.readouterr().err
+
+
 BAD = {
     "no folder": "localise no_such_folder",
     "no particles": "localise {twin} --particles 0",
@@ -133,18 +177,23 @@ BAD = {
     "empty folder": "localise {empty}",
     "a file": "localise {twin}/Barcodes.dat",
     "a broken file": "localise {broken}",
+    "a known start without truth": "localise {blind}",
+    "a calibration without truth": "localise {blind} --start global --calibrate 50",
+    "too many particles": "localise {twin} --particles 1000000000000000",
     "out is a file": "localise {twin} --particles 20 --out {twin}/Barcodes.dat",
 }
 
 
 @pytest.mark.parametrize("case", BAD)
-def test_bad_input_is_one_line_and_exit_two(tmp_path, capsys, case):
+def test_bad_input_is_one_line_and_exit_two(tmp_path, capsys, monkeypatch, case):
+    monkeypatch.chdir(tmp_path)
     (tmp_path / "empty").mkdir()
     shutil.copytree(DATA / "mrclam_twin", tmp_path / "broken")
     (tmp_path / "broken" / "Barcodes.dat").write_text("6 45\n7 ninety\n")
-    line = BAD[case].format(
-        twin=DATA / "mrclam_twin", empty=tmp_path / "empty", broken=tmp_path / "broken"
-    )
+    shutil.copytree(DATA / "mrclam_twin", tmp_path / "blind")
+    (tmp_path / "blind" / "Robot1_Groundtruth.dat").unlink()
+    places = {name: tmp_path / name for name in ("empty", "broken", "blind")}
+    line = BAD[case].format(twin=DATA / "mrclam_twin", **places)
     try:
         code = main(line.split())
     except SystemExit as stop:

@@ -55,7 +55,10 @@ def find_folder(name: str | Path | None, is_layout=None) -> Path:
 
 
 def load_mrclam(
-    folder: str | Path | None = None, robot: int | None = None, drop_unknown: bool = False
+    folder: str | Path | None = None,
+    robot: int | None = None,
+    drop_unknown: bool = False,
+    need_truth: bool = True,
 ) -> Log:
     """Load one robot's MRCLAM log.
 
@@ -67,6 +70,9 @@ def load_mrclam(
         Which robot, where the folder holds several.
     drop_unknown : bool
         Drop measurements whose bar code is not listed (misread ones) instead of refusing.
+    need_truth : bool
+        Refuse a log without ground truth. With False one is read, too; its truth and start are
+        None, so that it can be localised from a global start and cannot be scored.
 
     Returns
     -------
@@ -80,16 +86,19 @@ def load_mrclam(
     found = find_folder(folder, is_mrclam)
     if not found.is_dir():
         raise DataError(f"{found}: not a folder; name the folder that holds the log")
-    return read_mrclam(mrclam_files(found, robot), f"MRCLAM, {found.name}", drop_unknown)
+    files = mrclam_files(found, robot)
+    return read_mrclam(files, f"MRCLAM, {found.name}", drop_unknown, need_truth)
 
 
-def load_plaza(folder: str | Path | None = None) -> Log:
+def load_plaza(folder: str | Path | None = None, need_truth: bool = True) -> Log:
     """Load the range-only log Plaza 2.
 
     Parameters
     ----------
     folder : path, optional
         A folder with odometry.txt, ranges.txt, beacons.txt, truth.txt.
+    need_truth : bool
+        As in `load_mrclam`.
 
     Returns
     -------
@@ -103,11 +112,14 @@ def load_plaza(folder: str | Path | None = None) -> Log:
     found = find_folder(folder, is_plaza)
     if not found.is_dir():
         raise DataError(f"{found}: not a folder; name the folder that holds the log")
-    return read_plaza(found, f"Plaza, {found.name}")
+    return read_plaza(found, f"Plaza, {found.name}", need_truth)
 
 
 def load_log(
-    folder: str | Path | None = None, robot: int | None = None, drop_unknown: bool = False
+    folder: str | Path | None = None,
+    robot: int | None = None,
+    drop_unknown: bool = False,
+    need_truth: bool = True,
 ) -> Log:
     """Load a log of either layout, recognised by its file names.
 
@@ -119,6 +131,8 @@ def load_log(
         Which robot of a folder with several; the only one if left out.
     drop_unknown : bool
         Leave out measurements of bar codes that the map does not know, instead of an error.
+    need_truth : bool
+        As in `load_mrclam`.
 
     Returns
     -------
@@ -131,9 +145,9 @@ def load_log(
     """
     found = find_folder(folder)
     if is_plaza(found):
-        return load_plaza(found)
+        return load_plaza(found, need_truth)
     if is_mrclam(found):
-        return load_mrclam(found, robot, drop_unknown)
+        return load_mrclam(found, robot, drop_unknown, need_truth)
     raise DataError(
         f"{found}: neither *_Odometry.dat (MRCLAM) nor ranges.txt (Plaza) in it; {WHERE}"
     )

@@ -21,7 +21,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.datasets.text import line_of_row, read_table
+from pfkit.datasets.text import identities, read_table, read_truth, refuse
 from pfkit.datasets.timeline import merge
 from pfkit.errors import DataError
 from pfkit.log import Log
@@ -66,7 +66,8 @@ def mrclam_files(folder: Path, robot: int | None = None) -> Files:
         raise DataError(f"{folder / wanted}: no such file; see data/README.md for the layout")
     if len(prefixes) > 1:
         raise DataError(
-            f"{folder}: {len(prefixes)} robots ({', '.join(prefixes)}); choose one with robot=N"
+            f"{folder}: {len(prefixes)} robots ({', '.join(prefixes)}); choose one with robot=N "
+            "(--robot N)"
         )
     own = prefixes[0]
     shared = "" if re.fullmatch(r"Robot\d+_", own) else own
@@ -80,14 +81,17 @@ def mrclam_files(folder: Path, robot: int | None = None) -> Files:
     )
 
 
-def read_mrclam(files: Files, source: str, drop_unknown: bool = False) -> Log:
+def read_mrclam(
+    files: Files, source: str, drop_unknown: bool = False, need_truth: bool = True
+) -> Log:
     """Read and join the five files; see `pfkit.datasets.load_mrclam`."""
     command = read_table(files.odometry, ("time", "v", "omega"))
     seen = read_table(files.measurement, ("time", "barcode", "range", "bearing"))
-    truth = read_table(files.groundtruth, ("time", "x", "y", "heading"))
+    refuse(files.measurement, seen[2] < 0, seen[2], "range must be >= 0, got {:g}; delete the line")
+    truth = read_truth(files.groundtruth, need_truth)
     landmarks = read_table(files.landmarks, ("subject", "x", "y", "sd of x", "sd of y"))
     barcodes = read_table(files.barcodes, ("subject", "barcode"))
-    ids = _whole(files.landmarks, "subject", landmarks[0])
+    ids = identities(files.landmarks, "subject", landmarks[0])
     world = LandmarkMap(landmarks[1:3], ids, _arena(landmarks[1:3]))
     subject = _subjects(files, seen, barcodes, drop_unknown)
     kept = np.isin(subject, ids)
@@ -108,33 +112,21 @@ def _subjects(
     files: Files, seen: NDArray[np.float64], barcodes: NDArray[np.float64], drop_unknown: bool
 ) -> NDArray[np.int64]:
     """The subject behind the bar code of every measurement; -1 for one that is to be dropped."""
-    subjects = _whole(files.barcodes, "subject", barcodes[0])
-    codes = _whole(files.barcodes, "barcode", barcodes[1])
+    subjects, codes = barcodes
+    refuse(files.barcodes, subjects % 1 != 0, subjects, "subject must be whole, got {:g}")
+    identities(files.barcodes, "bar code", codes)
     order = np.argsort(codes)
-    repeated = np.flatnonzero(np.diff(codes[order]) == 0)
-    if repeated.size:
-        code = codes[order][repeated[0]]
-        raise DataError(f"{files.barcodes}: bar code {code} is listed twice; delete one line")
-    at = np.minimum(np.searchsorted(codes[order], seen[1]), codes.size - 1)
-    wrong = np.flatnonzero(codes[order][at] != seen[1])
-    if wrong.size and not drop_unknown:
-        line = line_of_row(files.measurement, wrong[0])
-        raise DataError(
-            f"{files.measurement}, line {line}: bar code {seen[1, wrong[0]]:g} is not in "
-            f"{files.barcodes.name}; add the code, or drop such rows (drop_unknown=True, "
-            "--drop-unknown)"
+    at = order[np.minimum(np.searchsorted(codes[order], seen[1]), codes.size - 1)]
+    unknown = codes[at] != seen[1]
+    if not drop_unknown:
+        refuse(
+            files.measurement,
+            unknown,
+            seen[1],
+            f"bar code {{:g}} is not in {files.barcodes.name}; add the code, or drop such rows "
+            "(drop_unknown=True, --drop-unknown)",
         )
-    subject = subjects[order][at]
-    subject[wrong] = -1
-    return subject
-
-
-def _whole(path: Path, name: str, values: NDArray[np.float64]) -> NDArray[np.int64]:
-    wrong = np.flatnonzero(values != np.round(values))
-    if wrong.size:
-        line = line_of_row(path, wrong[0])
-        raise DataError(f"{path}, line {line}: {name} must be whole, got {values[wrong[0]]:g}")
-    return values.astype(np.int64)
+    return np.where(unknown, -1, subjects[at]).astype(np.int64)
 
 
 def _arena(positions: NDArray[np.float64]) -> tuple[float, float, float, float]:

@@ -15,14 +15,15 @@ from __future__ import annotations
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
-from pfkit.datasets.text import line_of_row, read_table
+from pfkit.datasets.text import identities, read_table, read_truth, refuse
 from pfkit.datasets.timeline import merge
-from pfkit.errors import DataError
 from pfkit.geometry import wrap
 from pfkit.log import Log
 from pfkit.maps import LandmarkMap
 
+Array = NDArray[np.float64]
 MARGIN = 20.0  # metres by which the lawn reaches beyond the beacons
 
 
@@ -32,35 +33,36 @@ def is_plaza(folder: Path) -> bool:
     return bool(names & {"ranges.txt", "beacons.txt"})
 
 
-def read_plaza(folder: Path, source: str) -> Log:
+def read_plaza(folder: Path, source: str, need_truth: bool = True) -> Log:
     """Read and join the four files; see `pfkit.datasets.load_plaza`."""
     rows = read_table(folder / "odometry.txt", ("time", "distance", "turn"))
     seen = read_table(folder / "ranges.txt", ("time", "sender", "beacon", "range"))
     beacons = read_table(folder / "beacons.txt", ("beacon", "x", "y"))
-    truth = read_table(folder / "truth.txt", ("time", "x", "y", "heading"))
-    truth[3] = wrap(truth[3] + np.pi)
+    truth = read_truth(folder / "truth.txt", need_truth)
+    if truth is not None:
+        truth[3] = wrap(truth[3] + np.pi)
     (x0, y0), (x1, y1) = beacons[1:].min(axis=1) - MARGIN, beacons[1:].max(axis=1) + MARGIN
-    world = LandmarkMap(beacons[1:], beacons[0].astype(np.int64), (x0, x1, y0, y1))
-    unknown = np.flatnonzero(~np.isin(seen[2], world.ids))
-    if unknown.size:
-        line = line_of_row(folder / "ranges.txt", unknown[0])
-        raise DataError(
-            f"{folder / 'ranges.txt'}, line {line}: beacon {seen[2, unknown[0]]:g} is not in "
-            "beacons.txt; delete the line or add the beacon"
-        )
-    command = _as_commands(folder, rows, truth[0, 0])
+    ids = identities(folder / "beacons.txt", "beacon", beacons[0])
+    world = LandmarkMap(beacons[1:], ids, (x0, x1, y0, y1))
+    refuse(
+        folder / "ranges.txt",
+        ~np.isin(seen[2], ids),
+        seen[2],
+        "beacon {:g} is not in beacons.txt; delete the line or add the beacon",
+    )
+    refuse(
+        folder / "ranges.txt", seen[3] < 0, seen[3], "range must be >= 0, got {:g}; delete the line"
+    )
+    command = _as_commands(folder / "odometry.txt", rows, None if truth is None else truth[0, 0])
     return merge(command, seen[[0, 3, 2]], truth, world, source, start=command[0, 0])
 
 
-def _as_commands(folder: Path, rows: np.ndarray, t_truth: float) -> np.ndarray:
+def _as_commands(path: Path, rows: Array, t_truth: float | None) -> Array:
     """Turn "driven since the last row" into speeds that hold until the next row: (3, N + 1)."""
     t, distance, turn = rows
-    t0 = t_truth if t_truth < t[0] else t[0] - np.median(np.diff(t))
+    pause = np.median(np.diff(t)) if t.size > 1 else 1.0
+    t0 = t[0] - pause if t_truth is None or t_truth >= t[0] else t_truth
     dt = np.diff(t, prepend=t0)
-    if not (dt > 0).all():
-        line = line_of_row(folder / "odometry.txt", int(np.argmin(dt)))
-        raise DataError(
-            f"{folder / 'odometry.txt'}, line {line}: no time passed since the last row"
-        )
+    refuse(path, dt <= 0, t, "no time passed between the last row and {:g} s; delete the line")
     v, omega = np.append(distance / dt, 0.0), np.append(turn / dt, 0.0)
     return np.stack((np.append(t0, t), v, omega))

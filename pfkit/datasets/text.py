@@ -22,6 +22,7 @@ from pfkit.errors import DataError
 
 Array = NDArray[np.float64]
 TIME = "time"
+LARGEST = 1e12  # no second, metre or radian of a log is larger; nanoseconds since 1970 are
 
 
 def read_table(path: Path, columns: Sequence[str]) -> Array:
@@ -44,7 +45,7 @@ def read_table(path: Path, columns: Sequence[str]) -> Array:
     ------
     DataError
         With file, line and reason, if the file is missing, empty, cut short, not numeric, not
-        finite or runs backwards in time.
+        finite, absurdly large or runs backwards in time.
     """
     path = existing(path)
     text = _read_text(path)
@@ -55,27 +56,61 @@ def read_table(path: Path, columns: Sequence[str]) -> Array:
         raise DataError(_diagnosis(path, text, columns)) from None
     if table.size == 0:
         raise DataError(f"{path}: no rows of numbers in the file; it should hold {_list(columns)}")
-    if (
-        len(table) != len(columns)
-        or not np.isfinite(table).all()
-        or _runs_backwards(table, columns)
-    ):
+    sound = (np.abs(table) <= LARGEST).all()  # false for NaN, too
+    if len(table) != len(columns) or not sound or _runs_backwards(table, columns):
         raise DataError(_diagnosis(path, text, columns))
     return np.ascontiguousarray(table)
 
 
+def read_truth(path: Path, needed: bool) -> Array | None:
+    """Read time, x, y and heading (4, N); None if there is no such file and none is needed."""
+    if _find(path) is None:
+        if not needed:
+            return None
+        raise DataError(
+            f"{path}: no such file; a known start, a calibration and a score need the truth. "
+            "Without one, use a global start (need_truth=False, --start global)"
+        )
+    return read_table(path, (TIME, "x", "y", "heading"))
+
+
 def existing(path: Path) -> Path:
     """The path itself or its gzipped twin; `DataError` if neither is a file."""
-    for candidate in (path, path.with_name(path.name + ".gz")):
-        if candidate.is_file():
-            return candidate
-    raise DataError(f"{path}: no such file; see data/README.md for the layout of a log folder")
+    found = _find(path)
+    if found is None:
+        raise DataError(f"{path}: no such file; see data/README.md for the layout of a log folder")
+    return found
 
 
-def line_of_row(path: Path, row: int) -> int:
-    """The line number (from 1) of the row-th (from 0) row of numbers in a file."""
-    lines = enumerate(_read_text(existing(path)).splitlines(), start=1)
-    return [number for number, line in lines if _words(line)][row]
+def _find(path: Path) -> Path | None:
+    candidates = (path, path.with_name(path.name + ".gz"))
+    return next((candidate for candidate in candidates if candidate.is_file()), None)
+
+
+def refuse(path: Path, wrong: NDArray[np.bool_], values: Array, reason: str) -> None:
+    """Raise `DataError` for the first row that is wrong: file, line, reason with its value.
+
+    Parameters
+    ----------
+    path : Path of a table that has been read
+    wrong : bool array (N,), one per row
+    values : array (N,)
+    reason : str with ``{:g}`` where the value belongs
+    """
+    rows = np.flatnonzero(wrong)
+    if rows.size:
+        lines = enumerate(_read_text(existing(path)).splitlines(), start=1)
+        line = [number for number, text in lines if _words(text)][rows[0]]
+        raise DataError(f"{path}, line {line}: {reason.format(values[rows[0]])}")
+
+
+def identities(path: Path, name: str, values: Array) -> NDArray[np.int64]:
+    """Whole numbers that name things, each a different one; `DataError` if they are not."""
+    refuse(path, values != np.round(values), values, name + " must be whole, got {:g}; repair it")
+    again = np.ones(values.size, dtype=bool)
+    again[np.unique(values, return_index=True)[1]] = False
+    refuse(path, again, values, name + " {:g} is listed twice; delete one line")
+    return values.astype(np.int64)
 
 
 def _read_text(path: Path) -> str:
@@ -114,6 +149,8 @@ def _diagnosis(path: Path, text: str, columns: Sequence[str]) -> str:
                 return f"{where}: {name} must be a number, got {word!r:.40}; repair the line"
             if not np.isfinite(value):
                 return f"{where}: {name} must be finite, got {word}; repair or delete the line"
+            if abs(value) > LARGEST:
+                return f"{where}: {name} is {word}, which is absurd; are the units SI?"
             if name == TIME and value < before:
                 return f"{where}: time runs backwards, {word} after {before!r}; sort the file"
             if name == TIME:

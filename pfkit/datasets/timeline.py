@@ -68,7 +68,7 @@ def group_measurements(t: Array, t_z: Array, z: NDArray[Any]) -> list[NDArray[An
 def merge(
     command: Array,
     measured: Array,
-    truth: Array,
+    truth: Array | None,
     world: LandmarkMap,
     source: str,
     start: float,
@@ -82,7 +82,7 @@ def merge(
         What is measured before the first or after the last command is left out: nobody says
         how the robot moved then.
     measured : array (1 + n, N_z): time, then the rows of z
-    truth : array (4, N_x): time, x, y, theta
+    truth : array (4, N_x): time, x, y, theta; or None where nobody filmed
     world : LandmarkMap
     source : str
     start : float
@@ -94,13 +94,13 @@ def merge(
     inside = (t_command[0] <= t_z) & (t_z <= t_command[-1])
     z, t_z = measured[1:, inside], t_z[inside]
     t = np.union1d(t_command, t_z)
-    poses = interpolate_poses(t, truth[0] - start, truth[1:])
+    poses = None if truth is None else interpolate_poses(t, truth[0] - start, truth[1:])
     return Log(
         t,
         held_controls(t, t_command, *command[1:]),
         group_measurements(t, t_z, z),
         truth=poses,
-        start=poses[:, 0] if np.isfinite(poses[:, 0]).all() else None,
+        start=None if poses is None or np.isnan(poses[:, 0]).any() else poses[:, 0],
         world=world,
         source=source,
         outlier=None if false is None else group_measurements(t, t_z, false[inside]),
