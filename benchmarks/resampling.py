@@ -3,8 +3,8 @@
     .cache/benchmarks/bin/python benchmarks/resampling.py [--check]
 
 Weights are those of a filter: likelihoods of one measurement, ESS near M / 2 or M / 10. Prints
-microseconds and the time of each rival in units of pfkit's. ``--check`` fails if pfkit's
-systematic resampling at M = 100,000 and ESS near M / 2 is not faster than that of `particles`.
+microseconds and the time of each rival in units of pfkit's. ``--check`` fails if systematic
+resampling by `particles` at M = 100,000 and ESS near M / 2 does not take 1.7 times as long.
 """
 
 from __future__ import annotations
@@ -29,7 +29,7 @@ def weights(M: int, spread: float) -> np.ndarray:
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
-    parser.add_argument("--check", action="store_true", help="fail if slower than `particles`")
+    parser.add_argument("--check", action="store_true", help="fail if the target is missed")
     options = parser.parse_args()
     rng, level = np.random.default_rng(0), np.inf
     for spread in (2.3, 12.0):
@@ -52,7 +52,7 @@ def main() -> int:
                     level = times["particles"]
             print()
     print(f"systematic at 100,000, ESS near M / 2: particles takes {level:.2f} times as long")
-    return int(options.check and level < 1)
+    return int(options.check and level < 1.7)
 
 
 if __name__ == "__main__":

@@ -55,8 +55,8 @@ def roulette_wheel(w: ArrayLike, rng: np.random.Generator, n: int | None = None)
     -----
     Source: S. Thrun, CS373 Programming a Robotic Car, unit 3 (2012). O(M + n log M).
     """
-    w, edges, n = _read(w, rng, n)
-    total, batch = edges[..., -1:], w.shape[:-1]
+    w, total, n = _read(w, rng, n)
+    edges, batch = np.cumsum(w, axis=-1), w.shape[:-1]
     start = rng.integers(w.shape[-1], size=(*batch, 1))
     first = np.take_along_axis(edges - w, start, axis=-1) / total  # the start's left edge
     steps = 2 * w.max(axis=-1, keepdims=True) / total * rng.random((*batch, n))

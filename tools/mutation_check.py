@@ -61,8 +61,8 @@ MUTATIONS = [
     Mutation(
         "comb-off-by-one",
         "resampling",
-        "edges += np.nextafter(1.0, 0.0) - u",
-        "edges += 0.5",
+        "edges += ticks - 1 - tooth",
+        "edges += 2 * ticks - 1 - tooth",
         "test_resampling",
     ),
     Mutation(
