@@ -108,3 +108,5 @@ if __name__ == "__main__":
         main()
     except Stop as reason:
         sys.exit(f"[course] stopped: {reason}")
+    except KeyboardInterrupt:
+        sys.exit(1)  # tools/run.py says so

@@ -2,8 +2,7 @@
 
 `prepare("book")` installs what the book needs, `prepare("all")` everything that the tests and
 Jupyter need as well. A stamp inside the environment remembers the hash of what it was made from, so
-that the second call returns at once. Only the standard library is used here, and nothing newer than
-Python 3.7, so that a wrong Python gets a clear line and not a syntax error.
+that the second call returns at once. Only the standard library is used here.
 
     python tools/environment.py book|all|lock
 """
@@ -15,16 +14,17 @@ import json
 import os
 import subprocess
 import sys
+import tomllib
 import venv
 from pathlib import Path
+
+from python_version import THIS, complaint
 
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
 BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
 PYTHON = BIN / ("python.exe" if os.name == "nt" else "python")
 LOCKS = {"book": ROOT / "requirements-book.lock", "all": ROOT / "requirements.lock"}
-OLDEST, NEWEST = (3, 11), (3, 13)
-THIS = ".".join(map(str, sys.version_info[:2]))
 
 
 class Stop(Exception):
@@ -38,17 +38,12 @@ def say(text: str) -> None:
 
 def require_python() -> None:
     """Stop unless this Python is one of those the lock file was made for."""
-    if not OLDEST <= sys.version_info[:2] <= NEWEST:
-        raise Stop(
-            f"Python 3.11, 3.12 or 3.13 is needed, but this is {THIS} ({sys.executable}). "
-            "Install one of them, or name it: make PYTHON=/path/to/python3.11"
-        )
+    if complaint():
+        raise Stop(complaint())
 
 
 def fingerprint(kind: str) -> str:
     """Hash what an environment is made from: Python, lock file, what pip reads of the project."""
-    import tomllib
-
     project = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
     tools = project.get("tool", {}).get("setuptools", {})
     read_by_pip = [project["project"], project["build-system"], tools]

@@ -11,14 +11,17 @@
 The first call makes the environment .venv; nothing outside this folder is touched.
 """
 
-from __future__ import annotations
-
 import os
 import shutil
 import subprocess
 import sys
 
-from environment import PYTHON, ROOT, Stop, prepare, require_python, say
+from python_version import complaint
+
+if complaint():  # asked before anything is imported that an old Python cannot read
+    sys.exit("[course] stopped: " + complaint())
+
+from environment import PYTHON, ROOT, Stop, prepare, say
 
 # command: the environment it needs, the tool that does it, what to tell the tool first
 COMMANDS = {
@@ -31,7 +34,7 @@ COMMANDS = {
 }
 
 
-def clean(*flags: str) -> None:
+def clean(*flags):
     """Remove built files; with --all the environment and the caches too."""
     names = ["_build", ".pytest_cache", ".ruff_cache", ".mypy_cache", ".hypothesis"]
     names += [".venv", ".cache"] if "--all" in flags else []
@@ -41,7 +44,7 @@ def clean(*flags: str) -> None:
             shutil.rmtree(ROOT / name)
 
 
-def main(arguments: list[str]) -> int:
+def main(arguments):
     """Prepare the environment, then hand the command to the tool that does it."""
     command, rest = (arguments or ["help"])[0], arguments[1:]
     if command == "clean":
@@ -52,16 +55,16 @@ def main(arguments: list[str]) -> int:
         return 0 if command in ("help", "-h", "--help") else 2
     kind, tool, first = COMMANDS[command]
     prepare(kind)
-    script = [str(PYTHON), str(ROOT / "tools" / (tool + ".py")), *first, *rest]
+    script = [str(PYTHON), str(ROOT / "tools" / (tool + ".py"))]
+    script.extend(first + rest)
     path = str(PYTHON.parent) + os.pathsep + os.environ.get("PATH", "")
-    return subprocess.call(script, cwd=str(ROOT), env={**os.environ, "PATH": path})
+    return subprocess.call(script, cwd=str(ROOT), env=dict(os.environ, PATH=path))
 
 
 if __name__ == "__main__":
     try:
-        require_python()
         sys.exit(main(sys.argv[1:]))
     except Stop as reason:
-        sys.exit(f"[course] stopped: {reason}")
+        sys.exit("[course] stopped: " + str(reason))
     except KeyboardInterrupt:
         sys.exit("[course] interrupted")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import ast
 import subprocess
 import sys
 
@@ -23,6 +24,22 @@ def test_a_wrong_python_is_named(version, monkeypatch):
 
 def test_this_python_will_do():
     environment.require_python()
+
+
+@pytest.mark.parametrize("name", ["run.py", "python_version.py"])
+def test_an_old_python_can_read_what_complains_of_it(name):
+    """Python 2.7 and 3.6 stop at annotations, f-strings, unpacking and letters beyond ASCII."""
+    source = (ROOT / "tools" / name).read_text(encoding="utf-8")
+    assert source.isascii() and "__future__" not in source
+    for node in ast.walk(ast.parse(source)):
+        assert not isinstance(node, ast.JoinedStr | ast.AnnAssign | ast.NamedExpr)
+        assert not (isinstance(node, ast.List | ast.Tuple | ast.Set) and _unpacks(node.elts))
+        assert not (isinstance(node, ast.Dict) and None in node.keys)
+        assert getattr(node, "annotation", None) is None and getattr(node, "returns", None) is None
+
+
+def _unpacks(elements):
+    return any(isinstance(element, ast.Starred) for element in elements)
 
 
 @pytest.fixture
