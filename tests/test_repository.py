@@ -8,7 +8,9 @@ import tomllib
 from itertools import chain
 from pathlib import Path
 
+import checks
 import pytest
+import run
 
 ROOT = Path(__file__).resolve().parents[1]
 LARGEST_FILE, LARGEST_REPOSITORY = 1_000_000, 15_000_000  # bytes
@@ -92,3 +94,21 @@ def test_both_locks_agree():
             ("requirements.lock", "requirements-book.lock")]  # fmt: skip
     pins = [{row.split(" ;")[0] for row in part if "==" in row} for part in rows]
     assert pins[1] <= pins[0]
+
+
+AUTOMATION = [".ci/run", ".pre-commit-config.yaml", *sorted(ROOT.glob(".github/workflows/*.yml"))]
+
+
+@pytest.mark.parametrize("path", AUTOMATION, ids=lambda path: Path(path).name)
+def test_automation_calls_what_exists(path):
+    text = (ROOT / path).read_text(encoding="utf-8")
+    makefile = (ROOT / "Makefile").read_text(encoding="utf-8")
+    stages = {stage.name for stage in checks.stages()}
+    for only in re.findall(r"--only (.+)", text):
+        assert set(only.split()) <= stages
+    for tool, command in re.findall(r"python (tools/\w+\.py) (\w+)", text):
+        assert (ROOT / tool).is_file()
+        assert command in ({"test", "lint"} if "checks" in tool else run.COMMANDS)
+    for target in re.findall(r"^\W*(?:run: )?make (\w+)", text, re.M):
+        assert re.search(rf"^\.PHONY:.* {target}\b", makefile, re.M)
+    assert "github.com" not in text.replace("github.com/pre-commit/pre-commit-hooks", "")

@@ -17,7 +17,7 @@ import subprocess
 import sys
 from pathlib import Path
 
-from environment import BIN, ROOT, Stop, say
+from environment import ROOT, SCRIPTS, Stop, say
 
 HERE = ROOT / "tools" / "assets"
 PACKAGES = ROOT / ".cache" / "assets"
@@ -35,7 +35,7 @@ def fingerprint() -> str:
 
 def npm(*arguments: str, folder: Path) -> None:
     """Run npm from the environment; turn a failure into one line."""
-    path = str(BIN) + os.pathsep + os.environ.get("PATH", "")
+    path = str(SCRIPTS) + os.pathsep + os.environ.get("PATH", "")
     program = shutil.which("npm", path=path)
     if program is None:
         raise Stop("npm is missing: install the environment first (make book)")

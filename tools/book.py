@@ -18,7 +18,7 @@ import time
 from pathlib import Path
 
 import assets
-from environment import BIN, ROOT, Stop, say
+from environment import ROOT, SCRIPTS, Stop, say
 
 HTML = ROOT / "_build" / "html"
 LOG = ROOT / ".cache" / "book.log"
@@ -38,7 +38,7 @@ def fingerprint() -> str:
 
 
 def build_live_parts() -> None:
-    """Build what makes pages compute ; if that fails, the book does without."""
+    """Build what makes pages compute; if that fails, the book does without."""
     script = ROOT / "tools" / "live" / "build.py"
     if script.exists() and subprocess.call([sys.executable, str(script)], cwd=ROOT):
         say("the live parts could not be built: the pages will show their recorded pictures only")
@@ -55,7 +55,7 @@ def build() -> None:
         return
     say("building the book (every warning is an error)")
     shutil.rmtree(ROOT / "_build", ignore_errors=True)  # pages that are no more would stay
-    command = [str(BIN / "jupyter-book"), "build", ".", "-W", "--keep-going", "--all"]
+    command = [str(SCRIPTS / "jupyter-book"), "build", ".", "-W", "--keep-going", "--all"]
     start = time.monotonic()
     done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8")
     LOG.write_text(done.stdout + done.stderr, encoding="utf-8")

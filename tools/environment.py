@@ -14,6 +14,7 @@ import json
 import os
 import subprocess
 import sys
+import sysconfig
 import tomllib
 import venv
 from pathlib import Path
@@ -22,8 +23,8 @@ from python_version import THIS, complaint
 
 ROOT = Path(__file__).resolve().parent.parent
 VENV = ROOT / ".venv"
-BIN = VENV / ("Scripts" if os.name == "nt" else "bin")
-PYTHON = BIN / ("python.exe" if os.name == "nt" else "python")
+PYTHON = VENV / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+SCRIPTS = Path(sysconfig.get_path("scripts"))  # of the Python that runs this, .venv's or another
 LOCKS = {"book": ROOT / "requirements-book.lock", "all": ROOT / "requirements.lock"}
 
 
