@@ -43,9 +43,9 @@ def fit_beams(
 
     then refit each kind to its share of the readings, and repeat:
 
-    .. math:: z_c = \frac1n \sum_i e_{i,c}, \qquad
-              \sigma_{hit}^2 = \frac{\sum_i e_{i,hit} (r_i - r_i^*)^2}{\sum_i e_{i,hit}}, \qquad
-              \lambda = \frac{\sum_i e_{i,short} (1 + n_i)}
+    .. math:: z_c &= \frac1n \sum_i e_{i,c}, \qquad
+              \sigma_{hit}^2 = \frac{\sum_i e_{i,hit} (r_i - r_i^*)^2}{\sum_i e_{i,hit}}, \\
+              \lambda &= \frac{\sum_i e_{i,short} (1 + n_i)}
                              {\sum_i e_{i,short} (r_i + n_i (r_i^* + 1/\lambda))} .
 
     :math:`n_i = 1 / (e^{\lambda r_i^*} - 1)` stands for the people behind the wall, whom the

@@ -64,17 +64,16 @@ def normal_cdf(x: ArrayLike) -> Array:
 class BeamModel(Sensor):
     r"""A laser with four kinds of readings: columns z_k = (r, phi).
 
-    .. math:: p_{hit} = \frac{\mathcal N(r;\, r^*, \sigma_{hit}^2)}{\Phi(r^* / \sigma_{hit})},
-              \qquad
-              p_{short} = \frac{\lambda\, e^{-\lambda r}}{1 - e^{-\lambda r^*}}\; [r \le r^*],
-              \qquad p_{rand} = \frac{1}{r_{max}} \qquad (r < r_{max})
+    .. math:: p_{hit} &= \frac{\mathcal N(r;\, r^*, \sigma_{hit}^2)}{\Phi(r^* / \sigma_{hit})} \\
+              p_{short} &= \frac{\lambda\, e^{-\lambda r}}{1 - e^{-\lambda r^*}}\; [r \le r^*] \\
+              p_{rand} &= \frac{1}{r_{max}} \qquad (r < r_{max})
 
     with :math:`r^*` the length that ray casting gives. A hit or a short that would lie beyond
     r_max is read as r_max:
 
     .. math:: P(r = r_{max}) = z_{max}
-              + z_{hit}\, \frac{\Phi((r^* - r_{max}) / \sigma_{hit})}{\Phi(r^* / \sigma_{hit})}
-              + z_{short}\, \frac{\max(e^{-\lambda r_{max}} - e^{-\lambda r^*},\, 0)}
+              &+ z_{hit}\, \frac{\Phi((r^* - r_{max}) / \sigma_{hit})}{\Phi(r^* / \sigma_{hit})} \\
+              &+ z_{short}\, \frac{\max(e^{-\lambda r_{max}} - e^{-\lambda r^*},\, 0)}
                                 {1 - e^{-\lambda r^*}}
 
     Parameters

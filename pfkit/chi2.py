@@ -6,9 +6,8 @@ estimator's covariance is honest. Gates and consistency bands are its quantiles.
 
 For whole k the tail is a finite sum, so a dozen lines replace a statistics library:
 
-.. math:: P(\chi^2_k > x) = P(\chi^2_{k-2} > x)
-          + \frac{(x/2)^{k/2-1} e^{-x/2}}{\Gamma(k/2)}, \qquad
-          P(\chi^2_1 > x) = \mathrm{erfc}\sqrt{x/2}, \quad P(\chi^2_2 > x) = e^{-x/2} .
+.. math:: P(\chi^2_k > x) &= P(\chi^2_{k-2} > x) + \frac{(x/2)^{k/2-1} e^{-x/2}}{\Gamma(k/2)}, \\
+          P(\chi^2_1 > x) &= \mathrm{erfc}\sqrt{x/2}, \qquad P(\chi^2_2 > x) = e^{-x/2} .
 """
 
 from __future__ import annotations

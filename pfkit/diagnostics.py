@@ -220,8 +220,9 @@ def trace(history: History) -> Table:
 
     Returns
     -------
-    structured array (T,) with the fields step, t (s), ess, log_evidence, resampled,
-    position_sd (m) and error (m; NaN if the truth is not known)
+    structured array (T,)
+        Fields step, t (s), ess, log_evidence, resampled, position_sd (m) and error (m; NaN if
+        the truth is not known).
 
     Raises
     ------

@@ -7,7 +7,8 @@ The Bayes filter alternates two lines,
 
 With particles each line becomes a loop body. *Predict* moves every particle by a draw from
 the motion model. *Update* multiplies every weight by the likelihood of the measurement; the
-sum of what results, before it is divided out, estimates the evidence p(z_t | z_{1:t-1}).
+sum of what results, before it is divided out, estimates the evidence
+:math:`p(z_t \mid z_{1:t-1})`.
 *Resample* turns weights into copies when too few particles carry the weight. It adds noise
 and no information, so we do it only when the effective sample size says so, and never
 without a measurement.
@@ -48,7 +49,7 @@ class Info(NamedTuple):
 
     Attributes
     ----------
-    log_evidence : float or (B,), log p(z_t | z_{1:t-1}); 0 without a measurement
+    log_evidence : float or (B,), log of the evidence; 0 without a measurement
     ess : float or (B,), effective sample size before any resampling
     resampled : bool or (B,)
     ancestors : int64 array (M,) or (B, M): which particle each one descends from

@@ -9,8 +9,8 @@ multinomially, again and again, without any measurement. The share of the first 
 fair random walk that ends at 0 or 1. It is the Wright-Fisher model of population genetics, and
 its clock is known:
 
-.. math:: E[\text{generations until one of two equal clusters is lost}] \approx 2 N \ln 2,
-          \qquad E[\text{generations back to one common ancestor}] \approx 2 N .
+.. math:: E[\text{generations until one of two equal clusters is lost}] &\approx 2 N \ln 2 , \\
+          E[\text{generations back to one common ancestor}] &\approx 2 N .
 
 Systematic resampling of equal weights copies each particle once, so its clock stands still.
 
@@ -145,8 +145,8 @@ def coalescence_time(ancestors: ArrayLike) -> Array | np.float64:
 def drift_time(N: int, share: float = 0.5) -> float:
     r"""Expected resamplings until one of two clusters is lost by chance alone, exactly.
 
-    .. math:: t_i = 1 + \sum_{j=1}^{N-1} \binom{N}{j} p^j (1-p)^{N-j}\, t_j, \quad p = i/N,
-              \qquad t \approx -2N\,(p \ln p + (1-p) \ln (1-p))
+    .. math:: t_i &= 1 + \sum_{j=1}^{N-1} \binom{N}{j} p^j (1-p)^{N-j}\, t_j, \qquad p = i/N, \\
+              t &\approx -2N\,(p \ln p + (1-p) \ln (1-p))
 
     Parameters
     ----------

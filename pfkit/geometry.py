@@ -141,8 +141,9 @@ def circular_mean(theta: ArrayLike, w: ArrayLike | None = None) -> NDArray[np.fl
 
     Returns
     -------
-    array (...), radians in (-pi, pi]. For directions that cancel exactly the mean is not
-    defined and the result is arbitrary; look at the resultant length before you trust it.
+    array (...), radians in (-pi, pi]
+        For directions that cancel exactly the mean is not defined and the result is arbitrary;
+        look at the resultant length before you trust it.
 
     Raises
     ------

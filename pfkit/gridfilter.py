@@ -119,9 +119,9 @@ def predict_by_transport(
 ) -> PoseGrid:
     r"""Let random points of every occupied cell drive, and collect their mass where they end.
 
-    .. math:: \overline{bel}_i = \sum_j bel_j\; \frac{1}{K} \sum_k
-              [\, x_{jk}' \in \text{cell } i \,], \qquad x_{jk}' \sim p(x' \mid u, x_{jk}),\;
-              x_{jk} \text{ uniform in cell } j
+    .. math:: \overline{bel}_i &= \sum_j bel_j\; \frac{1}{K} \sum_k
+              [\, x_{jk}' \in \text{cell } i \,], \\
+              x_{jk}' &\sim p(x' \mid u, x_{jk}), \quad x_{jk} \text{ uniform in cell } j
 
     Parameters
     ----------

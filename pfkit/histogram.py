@@ -36,8 +36,8 @@ Array = NDArray[np.float64]
 def shift_kernel(u: int, undershoot: float = 0.0, overshoot: float = 0.0) -> Array:
     r"""Probabilities of moving by a number of cells, when told to move u of them.
 
-    .. math:: p(u) = 1 - p_{under} - p_{over}, \qquad
-              p(u \mp 1) = p_{under},\; p_{over} \text{ (short of, beyond the goal)}
+    .. math:: p(u) &= 1 - p_{under} - p_{over} \\
+              p(u \mp 1) &= p_{under},\; p_{over} \text{ (short of, beyond the goal)}
 
     Parameters
     ----------
@@ -162,8 +162,8 @@ def update_1d(bel: ArrayLike, likelihood: ArrayLike) -> tuple[Array, Array | np.
 def door_likelihood(doors: ArrayLike, z: bool, hit: float, false: float) -> Array:
     r"""What a door detector says about each cell.
 
-    .. math:: p(z = 1 \mid \text{door}) = p_{hit}, \qquad
-              p(z = 1 \mid \text{wall}) = p_{false}, \qquad p(0 \mid x) = 1 - p(1 \mid x)
+    .. math:: p(z = 1 \mid \text{door}) &= p_{hit}, \qquad
+              p(z = 1 \mid \text{wall}) = p_{false}, \\ p(z = 0 \mid x) &= 1 - p(z = 1 \mid x)
 
     Parameters
     ----------

@@ -117,8 +117,8 @@ def kalman_update(
 ) -> tuple[Gaussian, float, bool]:
     r"""Linear measurement, exactly: :math:`z = H x + \mathcal N(0, \Sigma_z)`.
 
-    .. math:: S = H \Sigma H^T + \Sigma_z, \quad K = \Sigma H^T S^{-1}, \quad
-              \mu' = \mu + K (z - H\mu), \quad \Sigma' = \Sigma - K S K^T
+    .. math:: S &= H \Sigma H^T + \Sigma_z, & K &= \Sigma H^T S^{-1}, \\
+              \mu' &= \mu + K (z - H\mu), \qquad & \Sigma' &= \Sigma - K S K^T
 
     Parameters
     ----------

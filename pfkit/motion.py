@@ -1,12 +1,12 @@
 r"""Motion models: where a control takes the robot, and how badly.
 
-A motion model is the density p(x_t | u_t, x_{t-1}). A particle filter never evaluates it;
-it only *samples*: each particle carries out the control with errors of its own. Draw the
-errors anew for each particle and each step. One common error for the whole cloud would move
-it rigidly and its spread would never grow.
+A motion model is the density :math:`p(x_t \mid u_t, x_{t-1})`. A particle filter never
+evaluates it; it only *samples*: each particle carries out the control with errors of its own.
+Draw the errors anew for each particle and each step. One common error for the whole cloud would
+move it rigidly and its spread would never grow.
 
 Where the errors enter matters as much as how large they are. Noise added to the pose makes
-a round blob. Noise in the control - a slightly wrong speed, a slightly wrong turn - bends
+a round blob. Noise in the control, a slightly wrong speed and a slightly wrong turn, bends
 the cloud into the banana that wheeled robots really leave.
 
 Between two instants a robot with constant speed v and turn rate omega drives an exact arc.
@@ -48,9 +48,11 @@ Array = NDArray[np.float64]
 class MotionModel(Protocol):
     """What a filter needs of a motion model; a class of your own drops in."""
 
-    def mean(self, pose: Array, u: Array) -> Array: ...
+    def mean(self, pose: Array, u: Array) -> Array:
+        """Where the control would take the robot without noise: (3, ...), (n,) -> (3, ...)."""
 
-    def sample(self, pose: Array, u: Array, rng: np.random.Generator) -> Array: ...
+    def sample(self, pose: Array, u: Array, rng: np.random.Generator) -> Array:
+        """Where each particle goes, with errors of its own: (3, ...), (n,) -> (3, ...)."""
 
 
 def draw_noise(variance: ArrayLike, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
@@ -72,9 +74,9 @@ def log_noise(error: Array, variance: Array) -> Array:
 def drive_arc(pose: Array, distance: ArrayLike, turn: ArrayLike) -> Array:
     r"""Follow an arc of a given length while the heading turns by a given angle.
 
-    .. math:: x' = x + d\,\mathrm{sinc}(\tfrac{\phi}{2}) \cos(\theta + \tfrac{\phi}{2}), \quad
-              y' = y + d\,\mathrm{sinc}(\tfrac{\phi}{2}) \sin(\theta + \tfrac{\phi}{2}), \quad
-              \theta' = \mathrm{wrap}(\theta + \phi)
+    .. math:: x' &= x + d\,\mathrm{sinc}(\tfrac{\phi}{2}) \cos(\theta + \tfrac{\phi}{2}) \\
+              y' &= y + d\,\mathrm{sinc}(\tfrac{\phi}{2}) \sin(\theta + \tfrac{\phi}{2}) \\
+              \theta' &= \mathrm{wrap}(\theta + \phi)
 
     Parameters
     ----------
@@ -117,9 +119,9 @@ def _arc(pose: Array, distance: Array, turn: Array) -> Array:
 class VelocityMotion:
     r"""Drive with a commanded speed and turn rate for a time: u = (v, omega, dt).
 
-    .. math:: \hat v = v + \mathcal N(0, \alpha_1 v^2 + \alpha_2 \omega^2), \quad
-              \hat\omega = \omega + \mathcal N(0, \alpha_3 v^2 + \alpha_4 \omega^2), \quad
-              \hat\gamma = \mathcal N(0, \alpha_5 v^2 + \alpha_6 \omega^2)
+    .. math:: \hat v &= v + \mathcal N(0, \alpha_1 v^2 + \alpha_2 \omega^2) \\
+              \hat\omega &= \omega + \mathcal N(0, \alpha_3 v^2 + \alpha_4 \omega^2) \\
+              \hat\gamma &= \mathcal N(0, \alpha_5 v^2 + \alpha_6 \omega^2)
 
     The robot then follows the exact arc of :math:`(\hat v, \hat\omega)` and turns by
     :math:`\hat\gamma\,\Delta t` more, without which all headings would lie on a line.
@@ -128,7 +130,8 @@ class VelocityMotion:
     ----------
     alpha : 4 or 6 numbers >= 0
         Noise per motion, as variances: alpha_1 is dimensionless, alpha_2 in (m/rad)^2,
-        alpha_3 in (rad/m)^2, alpha_4 dimensionless. With four, gamma is left out.
+        alpha_3 in (rad/m)^2, alpha_4 dimensionless, alpha_5 and alpha_6 as these two. With
+        four, gamma is left out.
 
     Raises
     ------
@@ -177,7 +180,7 @@ class VelocityMotion:
         return moved
 
     def log_density(self, pose1: Array, u: ArrayLike, pose0: Array) -> Array:
-        r"""Log of p(x_t | u_t, x_{t-1}), in 1 / (m^2 rad).
+        r"""Log of the density of a move, in 1 / (square metre and radian).
 
         One arc forwards and one backwards explain a move of chord c in the direction
         :math:`\beta` from the robot's nose: :math:`\phi = 2\beta`, and

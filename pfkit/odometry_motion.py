@@ -27,9 +27,9 @@ Array = NDArray[np.float64]
 def odometry_control(pose0: ArrayLike, pose1: ArrayLike) -> Array:
     r"""What the odometer saw between two of its poses: turn, drive, turn.
 
-    .. math:: \delta_{rot1} = \mathrm{atan2}(\Delta y, \Delta x) - \theta_0, \quad
-              \delta_{trans} = \sqrt{\Delta x^2 + \Delta y^2}, \quad
-              \delta_{rot2} = \theta_1 - \theta_0 - \delta_{rot1}
+    .. math:: \delta_{rot1} &= \mathrm{atan2}(\Delta y, \Delta x) - \theta_0 \\
+              \delta_{trans} &= \sqrt{\Delta x^2 + \Delta y^2} \\
+              \delta_{rot2} &= \theta_1 - \theta_0 - \delta_{rot1}
 
     Parameters
     ----------
@@ -55,9 +55,9 @@ def odometry_control(pose0: ArrayLike, pose1: ArrayLike) -> Array:
 class OdometryMotion:
     r"""Repeat what the odometer saw, turn - drive - turn: u = (rot1, trans, rot2).
 
-    .. math:: \hat\delta_{rot1} = \delta_{rot1} + \mathcal N(0, \alpha_1\delta_{rot1}^2
-                                  + \alpha_2\delta_{trans}^2), \quad
-              \hat\delta_{trans} = \delta_{trans} + \mathcal N(0, \alpha_3\delta_{trans}^2
+    .. math:: \hat\delta_{rot1} &= \delta_{rot1} + \mathcal N(0, \alpha_1\delta_{rot1}^2
+                                  + \alpha_2\delta_{trans}^2) \\
+              \hat\delta_{trans} &= \delta_{trans} + \mathcal N(0, \alpha_3\delta_{trans}^2
                                   + \alpha_4(\delta_{rot1}^2 + \delta_{rot2}^2))
 
     and rot2 like rot1. `odometry_control` makes u from two odometer poses.
@@ -111,7 +111,7 @@ class OdometryMotion:
         return self._move(pose, *noisy)
 
     def log_density(self, pose1: Array, u: ArrayLike, pose0: Array) -> Array:
-        r"""Log of p(x_t | u_t, x_{t-1}), in 1 / (m^2 rad).
+        r"""Log of the density of a move, in 1 / (square metre and radian).
 
         Two moves explain a displacement: turn to it and drive, or turn away and back up. Each
         gives three errors, and :math:`dx\,dy\,d\theta = |\delta_{trans}|\,

@@ -146,8 +146,8 @@ def _log_ratio_sum(q: Array, p: Array, power: int = 1) -> Array:
 def kl_divergence(bel: Particles, grid: PoseGrid, bins: int = 64) -> Divergence:
     r"""How far a particle set is from the exact posterior, in nats.
 
-    .. math:: \widehat{\mathrm{KL}} = \sum_c \hat q_c \log(\hat q_c / p_c) - (C_+ - 1)/2n,
-              \qquad \mathrm{sd}^2 = \frac{1}{n} \Big(\mathrm{Var}_{\hat q}[\log(\hat q/p)]
+    .. math:: \widehat{\mathrm{KL}} &= \sum_c \hat q_c \log(\hat q_c / p_c) - (C_+ - 1)/2n \\
+              \mathrm{sd}^2 &= \frac{1}{n} \Big(\mathrm{Var}_{\hat q}[\log(\hat q/p)]
               - \frac{C_+ - 1}{n}\Big)_+ + \frac{C_+ - 1}{2 n^2}
 
     Parameters

@@ -148,7 +148,7 @@ def normalise(
         Normalised: logsumexp is zero over the last axis.
     log_sum : array (...)
         The logarithm of the sum that was divided out. In `filters.update` it is the log of
-        p(z_t | z_{1:t-1}), the evidence.
+        the evidence.
 
     Raises
     ------

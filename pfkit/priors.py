@@ -34,7 +34,8 @@ from pfkit.particles import Particles, equal_log_weights
 class SamplesPoses(Protocol):
     """A map that can draw poses uniformly over the places where the robot can be."""
 
-    def sample_poses(self, shape: Shape, rng: np.random.Generator) -> NDArray[np.float64]: ...
+    def sample_poses(self, shape: Shape, rng: np.random.Generator) -> NDArray[np.float64]:
+        """Draw poses of some shape, components first, in metres and radians."""
 
 
 def uniform_prior(M: Shape, world: SamplesPoses, rng: np.random.Generator) -> Particles:

@@ -155,10 +155,10 @@ def inject(
 def poses_seeing(z: ArrayLike, sensor: RangeBearing, M: Shape, rng: np.random.Generator) -> Array:
     r"""Draw poses from which a range and bearing could have been measured: a ring.
 
-    .. math:: \hat r = r + \mathcal N(0, \sigma_r^2), \quad
+    .. math:: \hat r &= r + \mathcal N(0, \sigma_r^2), \quad
               \hat\phi = \phi + \mathcal N(0, \sigma_\phi^2), \quad
-              \gamma \sim U(0, 2\pi), \quad
-              x = m_x + \hat r\cos\gamma, \; y = m_y + \hat r\sin\gamma, \;
+              \gamma \sim \mathcal U(0, 2\pi), \\
+              x &= m_x + \hat r\cos\gamma, \quad y = m_y + \hat r\sin\gamma, \quad
               \theta = \gamma - \pi - \hat\phi
 
     Parameters

@@ -51,7 +51,8 @@ Array = NDArray[np.float64]
 class SensorModel(Protocol):
     """What a filter needs of a sensor model; a class of your own drops in."""
 
-    def log_likelihood(self, z: Array, pose: Array) -> Array: ...
+    def log_likelihood(self, z: Array, pose: Array) -> Array:
+        """Log p(z | x) of all measurements z (n, K): one number for each pose (3, ...)."""
 
 
 def how_many(z: ArrayLike | None) -> int:

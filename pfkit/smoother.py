@@ -4,9 +4,9 @@ A filter may look only at the past. When the whole log is at hand, the future he
 landmark seen now says where the robot must have been a second ago. The Rauch-Tung-Striebel
 smoother walks back through the filter's results and hands each correction on:
 
-.. math:: G_k = C_{k+1} \bar\Sigma_{k+1}^{-1}, \qquad
-          \mu^s_k = \mu_k + G_k (\mu^s_{k+1} - \bar\mu_{k+1}), \qquad
-          \Sigma^s_k = \Sigma_k + G_k (\Sigma^s_{k+1} - \bar\Sigma_{k+1}) G_k^T
+.. math:: G_k &= C_{k+1} \bar\Sigma_{k+1}^{-1} \\
+          \mu^s_k &= \mu_k + G_k (\mu^s_{k+1} - \bar\mu_{k+1}) \\
+          \Sigma^s_k &= \Sigma_k + G_k (\Sigma^s_{k+1} - \bar\Sigma_{k+1}) G_k^T
 
 with C the covariance of the states before and after a motion. It needs no measurement again,
 and it is no filter: nobody can drive a robot by it.

@@ -120,8 +120,9 @@ def run(
 
     Returns
     -------
-    structured array, one row per run: the setting's values, ``run``, and what the experiment
-    returned. Functions and objects among the values appear by name.
+    structured array, one row per run
+        The setting's values, ``run``, and what the experiment returned. Functions and objects
+        among the values appear by name.
 
     Raises
     ------

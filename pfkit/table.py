@@ -75,8 +75,8 @@ def summarise(
 
     Returns
     -------
-    structured array, one row per group in order of appearance: the columns of `by`, ``runs``,
-    ``value``, ``low`` and ``high``
+    structured array, one row per group in order of appearance
+        The columns of `by`, ``runs``, ``value``, ``low`` and ``high``.
 
     Raises
     ------
