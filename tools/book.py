@@ -22,6 +22,7 @@ from environment import ROOT, SCRIPTS, Stop, say
 
 HTML = ROOT / "_build" / "html"
 LOG = ROOT / ".cache" / "book.log"
+BUILD = [str(SCRIPTS / "jupyter-book"), "build", ".", "-W", "--keep-going", "--all"]
 INPUTS = ("book", "notebooks", "pfkit", "data", "tools", "CHANGELOG.md", "_config.yml", "_toc.yml")
 
 
@@ -55,9 +56,8 @@ def build() -> None:
         return
     say("building the book (every warning is an error)")
     shutil.rmtree(ROOT / "_build", ignore_errors=True)  # pages that are no more would stay
-    command = [str(SCRIPTS / "jupyter-book"), "build", ".", "-W", "--keep-going", "--all"]
     start = time.monotonic()
-    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, encoding="utf-8")
+    done = subprocess.run(BUILD, cwd=ROOT, capture_output=True, text=True, encoding="utf-8")
     LOG.write_text(done.stdout + done.stderr, encoding="utf-8")
     if done.returncode:
         print(explain(done.stdout + done.stderr))
