@@ -147,20 +147,7 @@ def _find(edges: Array, u: Array) -> Indices:
 def stratified(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
     r"""One draw in each of n equal strata: :math:`u_k = (k + U_k)/n`.
 
-    Parameters
-    ----------
-    w : array_like (M,) or (B, M), non-negative
-    rng : numpy.random.Generator
-    n : int, optional
-
-    Returns
-    -------
-    int64 array (n,) or (B, n), sorted ancestor indices
-
-    Raises
-    ------
-    ParameterError, ShapeError, DegenerateWeightsError
-        As `multinomial`.
+    Parameters, returns and errors are those of `multinomial`.
 
     Notes
     -----
@@ -206,20 +193,7 @@ def residual(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> In
     The rest has weights :math:`n w_m - \lfloor n w_m \rfloor`: the fractional part of n w, not
     of w.
 
-    Parameters
-    ----------
-    w : array_like (M,) or (B, M), non-negative
-    rng : numpy.random.Generator
-    n : int, optional
-
-    Returns
-    -------
-    int64 array (n,) or (B, n), sorted ancestor indices
-
-    Raises
-    ------
-    ParameterError, ShapeError, DegenerateWeightsError
-        As `multinomial`.
+    Parameters, returns and errors are those of `multinomial`.
 
     Notes
     -----

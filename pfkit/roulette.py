@@ -36,20 +36,8 @@ def roulette_wheel(w: ArrayLike, rng: np.random.Generator, n: int | None = None)
     forgets its start only slowly, and the start ignores the weights: for few particles
     :math:`E[N_m]` is *not* :math:`n w_m`. Its copies also scatter more than a comb's.
 
-    Parameters
-    ----------
-    w : array_like (M,) or (B, M), non-negative
-    rng : numpy.random.Generator
-    n : int, optional
-
-    Returns
-    -------
-    int64 array (n,) or (B, n), ancestor indices in the order of the walk, *not* sorted
-
-    Raises
-    ------
-    ParameterError, ShapeError, DegenerateWeightsError
-        As `multinomial`.
+    Parameters, returns and errors are those of `multinomial`, but its indices are *not* sorted:
+    they come in the order of the walk.
 
     Notes
     -----
