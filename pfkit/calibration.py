@@ -68,11 +68,10 @@ class Calibration:
         return replace(log, u=_corrected(log, self.speed, self.turn, self.delay))
 
     def __str__(self) -> str:
-        parts = [
-            f"speed x {self.speed:.3f}",
-            f"turn x {self.turn:.3f}",
-            f"delay {self.delay:.2f} s",
-        ]
+        parts = []
+        if (self.speed, self.turn, self.delay) != (1.0, 1.0, 0.0):
+            parts.append(f"speed x {self.speed:.3f}, turn x {self.turn:.3f}")
+            parts.append(f"delay {self.delay:.2f} s")
         if self.bearing_bias:
             parts.append(f"bearing bias {self.bearing_bias:+.4f} rad")
         if np.ndim(self.range_bias):
@@ -166,7 +165,7 @@ def calibrate(log: Log) -> Calibration:
         If `log` is not a log, or has no truth to compare with.
     """
     require_instance("log", log, Log)
-    if next(zk for zk in log.z if zk.shape[1]).shape[0] == 3:
+    if log.z[log.first_measured()].shape[0] == 3:
         return replace(fit_odometry(log), bearing_bias=fit_bearing_bias(log))
     return Calibration(range_bias=fit_range_bias(log))
 

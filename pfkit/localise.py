@@ -74,7 +74,7 @@ class Settings:
 def settings_for(log: Log, calibration: Calibration | None = None) -> Settings:
     """The course's settings for a log with range and bearing, or with ranges only."""
     fitted = calibration or Calibration()
-    if _rows(log) == 3:
+    if log.z[log.first_measured()].shape[0] == 3:
         if calibration is None:
             drift, (sigma_r, sigma_phi) = Drift((0.02, 0, 0), (0.05, 0.05, 0.001)), (0.45, 0.02)
         else:
@@ -86,14 +86,6 @@ def settings_for(log: Log, calibration: Calibration | None = None) -> Settings:
     drift = Drift((0.005, 0, 0), (5e-5, 0.002, 0))
     sensor = Range(log.world, 3.0, bias=fitted.range_bias, nu=4)
     return Settings(drift, sensor, (2000, 20000), (0.2, 0.2, 0.02), 5.0)
-
-
-def _rows(log: Log) -> int:
-    """Rows of a measurement; `DataError` if nothing was measured at all."""
-    for zk in log.z:
-        if zk.shape[1]:
-            return zk.shape[0]
-    raise DataError("the log holds no measurement of a landmark; there is nothing to localise by")
 
 
 def calibrate_first(log: Log, seconds: float) -> Calibration:
@@ -161,6 +153,13 @@ def localise(
     Returns
     -------
     Track
+
+    Raises
+    ------
+    ParameterError
+        If `start` is neither of the two, or M or `batch` is not a whole number >= 1.
+    DataError
+        If nothing was measured, or a known start is asked of a log that does not know its own.
     """
     settings = settings or settings_for(log)
     if start not in ("known", "global"):
@@ -175,7 +174,7 @@ def localise(
         bel = uniform_prior(shape, log.world, rng)
     steps = np.arange(len(log)) if every_row else informative_steps(log)
     short = compose_odometry(log, settings.drift, steps)
-    first = next(float(t) for t, zk in zip(log.t, log.z, strict=True) if zk.shape[1])
+    first = float(log.t[log.first_measured()])
     began = time.perf_counter()
     estimate, Sigma = _filter(short, bel, settings.sensor, rng, start == "known" or plain, watch)
     seconds = time.perf_counter() - began

@@ -81,6 +81,13 @@ class Log:
             if value is not None:
                 numbers = as_numbers if name == "truth" else require_finite
                 object.__setattr__(self, name, numbers(name, value, DataError))
+        self._require_shapes()
+        self._require_one_length()
+        back = np.flatnonzero(np.diff(self.t) < 0)
+        if back.size:
+            raise DataError(f"time runs backwards after t = {self.t[back[0]]}; sort the log")
+
+    def _require_shapes(self) -> None:
         if self.t.ndim != 1 or self.u.ndim < 2:
             raise DataError(
                 f"a log needs t (T,) and u (n, T), got {self.t.shape} and {self.u.shape}; "
@@ -96,6 +103,8 @@ class Log:
                 f"each z must be an array (n, K), got {self.z[bare[0]]!r:.60} at step {bare[0]}; "
                 "one measurement is one column"
             )
+
+    def _require_one_length(self) -> None:
         T = len(self.t)
         lengths = {"u": self.u.shape[1], "z": len(self.z)}
         if self.truth is not None:
@@ -105,9 +114,6 @@ class Log:
         for name, length in lengths.items():
             if length != T:
                 raise DataError(f"log has {T} times but {length} columns of {name}; align them")
-        back = np.flatnonzero(np.diff(self.t) < 0)
-        if back.size:
-            raise DataError(f"time runs backwards after t = {self.t[back[0]]}; sort the log")
 
     def __len__(self) -> int:
         return len(self.t)
@@ -135,6 +141,13 @@ class Log:
             outlier=None if self.outlier is None else self.outlier[part],
             scored=None if self.scored is None else self.scored[part],
         )
+
+    def first_measured(self) -> int:
+        """The first step that measured something; `DataError` if there is none."""
+        for k, zk in enumerate(self.z):
+            if zk.shape[1]:
+                return k
+        raise DataError("the log holds no measurement of the map; there is nothing to localise by")
 
     def __repr__(self) -> str:
         span = self.t[-1] - self.t[0] if len(self) else 0.0

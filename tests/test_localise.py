@@ -84,8 +84,13 @@ def test_a_known_start_needs_a_start(twin):
 
 
 def test_a_log_without_measurements_is_refused(twin):
+    blind = replace(twin, z=[np.empty((3, 0))] * len(twin))
     with pytest.raises(pf.DataError, match="no measurement"):
-        settings_for(replace(twin, z=[np.empty((3, 0))] * len(twin)))
+        settings_for(blind)
+    with pytest.raises(pf.DataError, match="no measurement"):
+        localise(blind, np.random.default_rng(0), settings=settings_for(twin))
+    with pytest.raises(pf.DataError, match="no measurement"):
+        pf.calibrate(blind)
 
 
 def test_the_command_prints_a_table_and_writes_the_track(tmp_path, capsys, twin):
