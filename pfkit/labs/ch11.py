@@ -526,7 +526,7 @@ luck_x = Experiment(
         ),
         Property("each copy is the heaviest in a quarter of the runs", _even),
     ),
-    margin="4.4 standard errors of a share of a quarter in 200 runs, four shares: 5e-5",
+    margin="4.4 standard errors of a share of a quarter in 200 runs, four binomial shares: 8e-5",
     hints=(
         "Simulate a batch of logs, run a batch of filters, ask pf.hypothesis_mass for the copies.",
         "pf.hypothesis_mass(bel, poses, 3.0) is (4, runs); argmax(axis=0) names the heaviest.",
