@@ -11,6 +11,8 @@ from pathlib import Path
 import numpy as np
 
 import pfkit as pf
+from pfkit.labs.lab4.modelled_noise import linear_weights
+from pfkit.labs.lab4.motion_models import CIRCLE, SIGMA, model_of, start_of
 from pfkit.labs.target import AREA, anywhere, around, target_log, track
 
 SEEDS, M = 10, 1000
@@ -23,13 +25,31 @@ TARGET = Path(__file__).parent.parent / "pfkit" / "labs" / "long_runs.py"
 def sensor(variance: float, rng: np.random.Generator) -> dict[str, np.ndarray]:
     bel = anywhere((SEEDS, M), rng)
     found = track(FILM, bel, pf.FixedTarget(2**0.5), pf.Position(variance**0.5), rng)
-    return {"mean error, px": found.error.mean(axis=0)}
+    linear = linear_weights(variance, rng, SEEDS, M, len(FILM))
+    return {"mean error, px": found.error.mean(axis=0), "linear weights": linear.mean(axis=0)}
 
 
 def motion(variance: float, rng: np.random.Generator) -> dict[str, np.ndarray]:
     bel = anywhere((SEEDS, M), rng)
     error = track(FILM, bel, pf.FixedTarget(variance**0.5), pf.Position(5.0), rng).error
     return {"mean error, px": error.mean(axis=0), "median error, px": np.median(error, axis=0)}
+
+
+def needed(model: str, rng: np.random.Generator) -> dict[str, np.ndarray]:
+    """Particles from which on the error is within a tenth of that with the largest number."""
+    errors = []
+    for size in SIZES:
+        bel = start_of(model, CIRCLE, (SEEDS, size), rng)
+        noise = model_of(model, SIGMA[model], 0.01 if model == "circle" else 0.05)
+        run = track(CIRCLE, bel, noise, pf.Position(20.0), rng)
+        errors.append(run.error[50:].mean(axis=0))
+    near = np.array(errors) <= 1.1 * errors[-1]
+    first = np.logical_and.accumulate(near[::-1])[::-1].argmax(axis=0)
+    return {
+        "error with 20 particles, px": errors[SIZES.index(20)],
+        f"with {SIZES[-1]}": errors[-1],
+        "particles to come within a tenth of that": np.array(SIZES)[first],
+    }
 
 
 def gated(variance: float, rng: np.random.Generator) -> dict[str, np.ndarray]:
@@ -50,14 +70,17 @@ def outliers(which: str, rng: np.random.Generator) -> dict[str, np.ndarray]:
     bel = around(HOME, (SEEDS, M), rng) if known else anywhere((SEEDS, M), rng)
     film_sensor = mixed if which.startswith("mixture") else honest
     gate = 1e-4 if which.startswith("gate") else 0.0
-    error = track(FALSE, bel, model, film_sensor, rng, gate=gate).error
-    return {"median error, px": np.median(error, axis=0)}
+    run = track(FALSE, bel, model, film_sensor, rng, gate=gate)
+    out = {"median error, px": np.median(run.error, axis=0)}
+    return out | ({"rejected of 688": run.rejected.sum(axis=0)} if gate else {})
 
 
+SIZES = (10, 20, 40, 80, 160, 320, 640, 1280)
 STARTS = ("naive, anywhere", "mixture, anywhere", "gate, known start", "gate, anywhere")
 TABLES = {
     "q9": ("modelled sensor variance, px^2", SWEEP, sensor),
     "q10": ("modelled process variance, px^2", SWEEP, motion),
+    "q12": ("motion model on the circling target", ("fixed", "line", "circle"), needed),
     "q15": ("modelled sensor variance, px^2", (1e-4, 0.01, 1, 10, 100, 1000, 2000, 1e4), gated),
     "q16": ("filter, start", STARTS, outliers),
 }

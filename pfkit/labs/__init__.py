@@ -69,8 +69,8 @@ A check prints, message first::
     Your answer divides by the largest weight. Hint 1 of 3: ...
 
 Modules: `items` (declarations), `lab` (verbs), `guard` (survives student code), `verdict`,
-`progress` (JSON), `calibration` (SVG), `controls` (ipywidgets), `replay` (false-fail rates),
-`mutants` (classic wrong implementations). All are NumPy and standard library only.
+`progress` (JSON), `summary`, `calibration` (SVG), `controls` (ipywidgets), `replay` (false-fail
+rates), `mutants` (classic wrong implementations). All are NumPy and standard library only.
 """
 
 from pfkit.labs.items import (

@@ -3,11 +3,17 @@
 A check calls functions that students wrote an hour ago. They raise, recurse without end, print a
 megabyte, call ``sys.exit`` or never return. `guarded` turns each of these into a short sentence.
 
-It is a seat belt, not a sandbox: code that kills the process, or writes a file, does so.
+Afterwards the working folder, NumPy's and Python's global generators, warnings and the printed
+stream are what they were before.
+
+It is a seat belt, not a sandbox: code that kills the process, or writes a file, does so, and one
+endless operation inside C (``10**10**10``) hears no alarm: restart the kernel.
 """
 
 import contextlib
 import io
+import os
+import random
 import signal
 import sys
 import threading
@@ -15,6 +21,7 @@ import traceback
 import warnings
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -94,6 +101,45 @@ def hushed(limit: int = PRINT_LIMIT) -> Iterator[_Capped]:
         yield stream
 
 
+@contextlib.contextmanager
+def _as_before() -> Iterator[None]:
+    """Put back what a student's code may have changed for everybody after it."""
+    depth, state = sys.getrecursionlimit(), random.getstate()
+    numpy_state = np.random.get_state()  # noqa: NPY002  students use the global generator
+    folder = ""
+    with contextlib.suppress(OSError):
+        folder = os.getcwd()
+    try:
+        yield
+    finally:
+        sys.setrecursionlimit(depth)
+        random.setstate(state)
+        np.random.set_state(numpy_state)  # noqa: NPY002
+        with contextlib.suppress(OSError):  # a folder that is gone
+            os.chdir(folder)
+
+
+@contextlib.contextmanager
+def _listening() -> Iterator[list[int]]:
+    """Note whether a person pressed interrupt, to tell it from ``raise KeyboardInterrupt``."""
+    heard: list[int] = []
+    before = signal.getsignal(signal.SIGINT)
+    if not callable(before) or threading.current_thread() is not threading.main_thread():
+        yield heard
+        return
+
+    def ring(number: int, frame: FrameType | None) -> None:
+        heard.append(number)
+        before(number, frame)
+
+    signal.signal(signal.SIGINT, ring)
+    try:
+        yield heard
+    finally:
+        if signal.getsignal(signal.SIGINT) is ring:
+            signal.signal(signal.SIGINT, before)
+
+
 @dataclass(frozen=True)
 class Ran:
     """What came of a call: a value, or an error in words, and what was printed."""
@@ -109,11 +155,23 @@ def describe(error: BaseException) -> str:
         return "stopped, it took too long: does a loop never end?"
     if isinstance(error, RecursionError):
         return "it calls itself without end (RecursionError)"
+    if isinstance(error, ValueError) and (words := _of_numpy(error)):
+        return words + _where(error)
     try:
         message = " ".join(str(error).split())[:200]
     except BaseException:
         message = "(its message cannot be printed)"
     return f"{type(error).__name__}: {message}".rstrip(": ") + _where(error)
+
+
+def _of_numpy(error: ValueError) -> str:
+    """Two messages of NumPy that beginners meet daily, in plainer words; "" for others."""
+    told = error.args[0] if error.args and isinstance(error.args[0], str) else ""
+    if "inhomogeneous" in told:
+        return "parts of its result differ in length, so they form no array"
+    if told.startswith("The truth value of an array"):
+        return "an array stands where one True or False is needed"
+    return ""
 
 
 def _where(error: BaseException) -> str:
@@ -126,14 +184,13 @@ def _where(error: BaseException) -> str:
 
 
 def guarded(call: Callable[[], Any], seconds: float = TIME_LIMIT) -> Ran:
-    """Run ``call()``; whatever happens, come back with a `Ran`."""
-    depth = sys.getrecursionlimit()
-    with hushed() as stream:
+    """Run ``call()``; whatever happens, come back with a `Ran`, unless a person interrupts."""
+    with _as_before(), hushed() as stream, _listening() as interrupted:
         try:
             with _alarm(seconds):
                 value = call()
             return Ran(value, "", stream.getvalue())
         except BaseException as error:
+            if interrupted and isinstance(error, KeyboardInterrupt):
+                raise
             return Ran(None, describe(error), stream.getvalue())
-        finally:
-            sys.setrecursionlimit(depth)

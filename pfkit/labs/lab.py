@@ -16,13 +16,13 @@ import inspect
 import os
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from html import escape
 from pathlib import Path
 from typing import Any
 
-from pfkit.labs import calibration, controls, progress
+from pfkit.labs import controls, progress
 from pfkit.labs.guard import guarded
 from pfkit.labs.items import Experiment, Item, Judgement, Prediction, Text, is_unanswered
+from pfkit.labs.summary import Summary, Tally
 from pfkit.labs.verdict import Line, Verdict
 
 FINE = ("passed", "recorded", "predicted")
@@ -132,7 +132,8 @@ class Lab:
 
         ran = guarded(judge)
         if ran.error:
-            return Judgement((Line("your answer can be run", False, ran.error),)), "wrong"
+            line = Line("your answer can be run", False, ran.error)
+            return Judgement((line,), None, "Mend this first: nothing else was judged."), "wrong"
         if ran.value is None:
             return Judgement(()), "unanswered"
         full, some = ran.value.fraction == 1, ran.value.fraction > 0
@@ -229,9 +230,14 @@ class Lab:
             if name in tried and isinstance(item := self.items[name], Prediction)
         ]
 
-    def summary(self) -> "Summary":
+    def summary(self) -> Summary:
         """Points per question, and how well your sureness matched what happened."""
-        return Summary(self)
+        report = self.report()
+        rows = [
+            Tally(f"{q.id.upper()} {q.title}", [report[i.id] for i in q.items])
+            for q in self.questions
+        ]
+        return Summary(self.title, rows, self.guesses())
 
     # -- keeping -----------------------------------------------------------------------------
 
@@ -259,54 +265,6 @@ class Lab:
             if isinstance(item, Prediction) and kept["choice"] in item.options:
                 self.predictions.setdefault(name, kept)
         return told
-
-
-class Summary:
-    """What `Lab.summary` shows: text first, the same in HTML with the plot."""
-
-    def __init__(self, lab: Lab) -> None:
-        report, self._guesses = lab.report(), lab.guesses()
-        self._rows = [(lab.title, "", "")]
-        for q in lab.questions:
-            got = [report[i.id] for i in q.items]
-            waiting = sum(r["status"] == "recorded" for r in got)
-            note = f"{waiting} waiting for marking by hand" if waiting else ""
-            points = f"{sum(r['score'] for r in got):g} of {sum(r['max'] for r in got):g}"
-            self._rows.append((f"{q.id.upper()} {q.title}", points, note))
-        auto = sum(r["score"] for r in report.values())
-        self._rows.append(
-            ("Total", f"{auto:g} of {sum(i.points for i in lab.items.values()):g}", "")
-        )
-
-    @property
-    def _told(self) -> list[str]:
-        if not self._guesses:
-            return ["Predictions: none tested yet."]
-        right, n = sum(r for _, _, r in self._guesses), len(self._guesses)
-        lines = [f"Predictions: {right} of {n} right."]
-        sure = [(s, r) for _, s, r in self._guesses if s is not None]
-        for s, share, k in calibration.table(sure):
-            lines.append(f"  when {s:.0f} % sure: {100 * share:.0f} % right ({k})")
-        if sure:
-            lines.append(f"  Brier score {calibration.brier(sure):.3f} (0 perfect, 0.25 a coin)")
-        return lines
-
-    def __repr__(self) -> str:
-        width = max(len(a) for a, _, _ in self._rows[1:])
-        rows = [f"{a:<{width}}  {b}  {c}".rstrip() for a, b, c in self._rows]
-        return "\n".join(rows + self._told)
-
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f'<tr><th scope="row">{escape(a)}</th><td>{escape(b)}</td><td>{escape(c)}</td></tr>'
-            for a, b, c in self._rows[1:]
-        )
-        told = "".join(f"<p>{escape(x)}</p>" for x in self._told)
-        sure = [(s, r) for _, s, r in self._guesses if s is not None]
-        return (
-            f'<div role="status" class="pfkit-summary"><table><caption>{escape(self._rows[0][0])}'
-            f"</caption>{rows}</table>{told}{calibration.svg(sure) if sure else ''}</div>"
-        )
 
 
 def _source(answer: Any, limit: int = 20_000) -> str:

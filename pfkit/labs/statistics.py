@@ -1,9 +1,17 @@
-"""The few statistics that experiments decide with."""
+"""What experiments measure and decide with."""
 
 import math
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
+
+
+def shaped(found: ArrayLike, *shape: int) -> NDArray[np.float64]:
+    """Numbers as an array of a stated shape; raises ValueError that names both shapes."""
+    x = np.asarray(found, dtype=float)
+    if x.shape != shape:
+        raise ValueError(f"expected numbers of shape {shape}, got shape {x.shape}")
+    return x
 
 
 def rng_of(seed: int) -> np.random.Generator:

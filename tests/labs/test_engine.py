@@ -1,9 +1,14 @@
 """The engine survives every answer, says one thing at a time, and loses nothing."""
 
 import json
+import os
+import random
+import signal
 import sys
 import time
 import types
+import warnings
+from fractions import Fraction
 
 import numpy as np
 import pytest
@@ -183,6 +188,102 @@ def test_right_answers_pass_and_score(lab):
     assert statuses == ["passed"] * 3 + ["predicted", "passed", "recorded"]
     assert "5 of 7" not in repr(lab.summary()) and "6 of 7" in repr(lab.summary())
     assert "1 waiting for marking by hand" in repr(lab.summary())
+
+
+def test_a_function_that_writes_into_its_argument_is_told(lab):
+    def in_place(w):
+        w /= w.sum()
+        return w
+
+    verdict = lab.check("c", in_place)
+    assert verdict.status == "partial" and "x = x + 1, not x += 1" in verdict.hint
+    assert "[no] leaves its arguments as they were" in str(verdict)
+
+
+def test_lists_and_tuples_of_numbers_are_arrays(lab):
+    assert lab.check("c", lambda w: [x / w.sum() for x in w]).status == "passed"
+    assert lab.check("c", lambda w: tuple(w / w.sum())).status == "passed"
+
+
+FORMS = [
+    (np.array([[2.667]]), "passed", ""),
+    ([2.667], "passed", ""),
+    (Fraction(8, 3), "passed", ""),
+    ("2.667", "wrong", "without quotation marks"),
+    ((2.667, 1), "wrong", "Separate several"),
+    (2.7, "wrong", "rounded too far"),
+    (np.nan, "wrong", "Hint 1 of 3: first"),
+]
+
+
+@pytest.mark.parametrize(("given", "status", "told"), FORMS, ids=str)
+def test_a_right_number_in_another_form(lab, given, status, told):
+    verdict = lab.check("n", given)
+    assert verdict.status == status and told in verdict.hint
+
+
+def test_shares_and_order_are_told_apart_from_wrong_numbers():
+    item = Numeric(id="s", title="shares", key=(0.75, 0.316), tol=0.002, hints=HINTS)
+    lab = Lab("l", "L", [Question("1", "One", (item,))])
+    assert "per cent" in lab.check("s", (75, 31.6)).hint
+    assert "another order" in lab.check("s", (0.316, 0.75)).hint
+    assert lab.check("s", (0.1, 0.2)).hint == "Hint 1 of 3: first", "no hint was spent before"
+
+
+def test_letters_may_come_with_their_text(lab):
+    for given in ("b", " B ", "(b)", "b)", "b) a hypothesis"):
+        assert lab.check("m", given).status == "passed"
+    assert "quotation marks" in lab.check("m", "a hypothesis").hint
+
+
+def test_a_share_is_not_locked_as_a_per_cent(lab):
+    assert "not .7" in str(lab.predict("p", ("a", 0.8))) and not lab.predictions
+    assert lab.predict("p", ("a", "80 %")).status == "predicted"
+    assert lab.predictions["p"]["sure"] == 80
+
+
+def test_a_passed_experiment_tells_how_it_was_tested(lab):
+    lab.predict("p", "a")
+    told = lab.check("x", lambda rng: rng.normal()).hint
+    assert "100 runs, seed 2024: |mean| < 5 SE" in told and "below 0.0001 (5 SE)" in told
+
+
+def test_the_world_is_as_before(lab, tmp_path):
+    def meddles(w):
+        os.chdir(tmp_path)
+        np.random.seed(0)  # noqa: NPY002
+        random.seed(0)
+        warnings.simplefilter("error")
+        np.seterr(all="raise")
+        sys.stdout = None
+        sys.setrecursionlimit(5_000)
+        return w / w.sum()
+
+    def world():
+        state = np.random.get_state()[1].tobytes()  # noqa: NPY002
+        return (os.getcwd(), state, random.getstate(), warnings.filters[:], np.geterr(),
+                sys.stdout, sys.getrecursionlimit())  # fmt: skip
+
+    before = world()
+    assert lab.check("c", meddles).status == "passed"
+    assert world() == before
+
+
+def test_a_person_can_interrupt(lab):
+    if sys.platform == "win32":
+        pytest.skip("signals differ")
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    try:
+        with pytest.raises(KeyboardInterrupt):
+            lab.check("c", lambda w: (os.kill(os.getpid(), signal.SIGINT), time.sleep(5)))
+        assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+    finally:
+        signal.signal(signal.SIGINT, before)
+
+
+def test_an_answer_that_cannot_be_judged_costs_no_hint(lab):
+    assert "Mend this first" in lab.check("c", interrupts).hint
+    assert lab.check("c", lambda w: w).hint == "Hint 1 of 3: first"
 
 
 STUBS = [

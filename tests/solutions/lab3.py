@@ -95,15 +95,21 @@ def kde(x, samples, h):
 
 # %% p6b
 def fit_scores(train, test):
-    """Mean log density of test: Gaussian, histogram, KDE."""
+    """Mean log density of test: Gaussian, histogram, KDE, mixture."""
+
     # BEGIN SOLUTION
-    mu, sd = train.mean(), train.std()
-    gaussian = -0.5 * ((test - mu) / sd) ** 2 - np.log(sd * np.sqrt(2 * np.pi))
+    def normal(x, samples):
+        mu, sd = samples.mean(), samples.std()
+        return np.exp(-0.5 * ((x - mu) / sd) ** 2) / (sd * np.sqrt(2 * np.pi))
+
     edges = np.linspace(-15, 15, 31)
     counts = np.histogram(train, edges)[0] + 0.5
     height = counts / counts.sum() / np.diff(edges)
     cell = np.clip(np.searchsorted(edges, test, side="right") - 1, 0, 29)
-    return gaussian.mean(), np.log(height[cell]).mean(), np.log(kde(test, train, 0.6)).mean()
+    parts = train[train < train.mean()], train[train >= train.mean()]
+    mixture = sum(len(part) / len(train) * normal(test, part) for part in parts)
+    curves = normal(test, train), height[cell], kde(test, train, 0.6), mixture
+    return [np.log(density).mean() for density in curves]
     # END SOLUTION
 
 
@@ -195,6 +201,15 @@ def log_likelihood(z, state, sigma):
     # END SOLUTION
 
 
+# %% q3d
+def weights_of(log_l):
+    """Normalised weights (M,) from log-likelihoods log_l (M,)."""
+    # BEGIN SOLUTION
+    w = np.exp(log_l - log_l.max())
+    return w / w.sum()
+    # END SOLUTION
+
+
 # %% q4a
 q4a = 5, 5, 1, 2
 
@@ -215,9 +230,12 @@ def residual(w, rng):
     # BEGIN SOLUTION
     M = len(w)
     copies = np.floor(M * w + 1e-12).astype(int)
+    certain = np.repeat(np.arange(M), copies)
+    left = M - len(certain)
+    if left == 0:
+        return certain
     rest = np.maximum(M * w - copies, 0)
-    drawn = rng.choice(M, M - copies.sum(), p=rest / rest.sum())
-    return np.concatenate([np.repeat(np.arange(M), copies), drawn])
+    return np.concatenate([certain, rng.choice(M, left, p=rest / rest.sum())])
     # END SOLUTION
 
 

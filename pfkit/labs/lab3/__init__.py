@@ -7,20 +7,23 @@ P1 to P8 prepare; Q1 to Q8 run a filter on a target in an image. The notebook is
 from pfkit.labs.lab import Lab
 from pfkit.labs.lab3 import (
     ablations,
+    densities,
     deprivation,
     likelihood,
     motion_models,
     noise,
+    particle_count,
     resamplers,
     sample_variance,
     summaries,
+    survival,
     weights,
 )
 from pfkit.labs.target import anywhere, around, target_log, track
 
 PARTS = (
-    weights, deprivation, summaries, sample_variance,
-    motion_models, likelihood, resamplers, noise, ablations,
+    weights, deprivation, summaries, densities, sample_variance, particle_count,
+    motion_models, likelihood, resamplers, survival, noise, ablations,
 )  # fmt: skip
 LAB = Lab("lab3", "Lab 3: the particle filter", [q for part in PARTS for q in part.QUESTIONS])
 check, use, predict, answer, summary, save, load = LAB.verbs()

@@ -13,6 +13,7 @@ from pfkit.labs.items import (
     Property,
 )
 from pfkit.labs.lab import Question
+from pfkit.labs.statistics import shaped
 from pfkit.labs.target import anywhere, around, target_log, track
 
 FILM = target_log("fixed", "low")
@@ -30,9 +31,7 @@ def collapse(sigma, rng, runs):
 
 
 def _collapse(f, rng, runs):
-    pairs = [np.asarray(f(sigma, rng, runs), dtype=float) for sigma in (0.0, 1.0)]
-    if any(p.shape != (2, runs) for p in pairs):
-        raise ValueError(f"expected two arrays of shape (2, {runs}), got {pairs[0].shape}")
+    pairs = [shaped(f(sigma, rng, runs), 2, runs) for sigma in (0.0, 1.0)]
     return np.stack(pairs).transpose(2, 0, 1)
 
 
@@ -149,10 +148,7 @@ def three_filters(rng, runs):
 
 
 def _three(f, rng, runs):
-    found = np.asarray(f(rng, runs), dtype=float)
-    if found.shape != (3, runs):
-        raise ValueError(f"expected shape (3, {runs}), got {found.shape}")
-    return found.T
+    return shaped(f(rng, runs), 3, runs).T
 
 
 Q8 = Question(

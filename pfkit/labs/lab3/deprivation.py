@@ -14,7 +14,7 @@ from pfkit.labs.items import (
     Text,
 )
 from pfkit.labs.lab import Question
-from pfkit.labs.statistics import z_of_fall
+from pfkit.labs.statistics import shaped, z_of_fall
 from pfkit.labs.target import anywhere, around, target_log, track
 
 FILM = target_log("fixed", "low")
@@ -35,7 +35,7 @@ SIZES = (25, 100, 400)
 
 
 def _deprivation(f, rng, runs):
-    found = np.stack([np.asarray(f(M, rng, runs)) for M in SIZES], axis=1)
+    found = np.stack([shaped(f(M, rng, runs), runs) for M in SIZES], axis=1)
     if not np.isin(found, (0, 1)).all():
         raise ValueError("each run must give True or False")
     return found
@@ -49,10 +49,10 @@ P3 = Question(
             id="p3a",
             title="Share of runs without a particle near the truth",
             points=2,
-            claim="the share falls with the number of particles",
-            test="two-proportion z > 3 from 25 to 100 and from 100 to 400 particles",
+            claim="the share falls with the number of particles; with 100 it is below 1 in 4",
+            test="two-proportion z > 3 from 25 to 100 and from 100 to 400 particles; share < .25",
             runs=400,
-            margin="z is 14.6 and 7.8 on average, sd .6: 8 standard errors above 3",
+            margin="z is 14.6 and 7.8 on average, sd .6: 8 standard errors above 3; share .13: 7",
             measure=_deprivation,
             reference=deprived,
             hints=(
@@ -68,6 +68,10 @@ P3 = Question(
                 Property(
                     "fewer still with 400",
                     lambda x: z_of_fall(x[:, 1], x[:, 2]) > 3 or f"shares {x.mean(0).round(3)}",
+                ),
+                Property(
+                    "with 100 fewer than 1 in 4",
+                    lambda x: x[:, 1].mean() < 0.25 or f"share {x[:, 1].mean():.3f}",
                 ),
             ),
             misconceptions=(
@@ -92,6 +96,17 @@ P3 = Question(
                     ),
                     lambda M, rng, runs: ~deprived(M, rng, runs),
                     lambda x: z_of_fall(x[:, 2], x[:, 0]) > 4,
+                ),
+                Misconception(
+                    "no-filter",
+                    "looks at the particles as they were drawn, before any measurement",
+                    (
+                        "Your shares are those of darts thrown at the image. Who aims them?",
+                        "Ten frames of the film must pass first.",
+                        "Use run.bel.state, after lab.track(lab.film[:10], ...).",
+                    ),
+                    lambda M, rng, runs: _as_drawn(M, rng, runs),
+                    lambda x: 0.25 < x[:, 1].mean() < 0.6 and x[:, 2].mean() < 0.1,
                 ),
             ),
         ),
@@ -137,6 +152,11 @@ def _deprived_any(M, rng, runs):
     return (np.hypot(bel.state[0] - HOME[0], bel.state[1] - HOME[1]) > 30).any(axis=-1)
 
 
+def _as_drawn(M, rng, runs):
+    x, y = anywhere((runs, M), rng).state
+    return (np.hypot(x - HOME[0], y - HOME[1]) > 30).all(axis=-1)
+
+
 # -- P4 ------------------------------------------------------------------------------------------
 
 
@@ -148,9 +168,7 @@ def ess_history(resample, rng, runs):
 
 
 def _histories(f, rng, runs):
-    with_, without = (np.asarray(f(r, rng, runs), dtype=float) for r in (True, False))
-    if with_.shape != (50, runs) or without.shape != (50, runs):
-        raise ValueError(f"expected two arrays of shape (50, {runs}), got {with_.shape}")
+    with_, without = (shaped(f(r, rng, runs), 50, runs) for r in (True, False))
     return np.stack([with_.T, without.T], axis=1)
 
 

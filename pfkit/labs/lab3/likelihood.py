@@ -22,6 +22,15 @@ def log_likelihood(z, state, sigma):
     return -d2 / (2 * sigma**2) - np.log(2 * np.pi * sigma**2)
 
 
+def weights_of(log_l):
+    """Normalised weights from log-likelihoods, equal weights before."""
+    w = np.exp(log_l - np.max(log_l))
+    return w / w.sum()
+
+
+_LOGS = np.array([-1.0, -3.0, -2.5, -0.2])
+
+
 def _fix(seed):
     rng = rng_of(seed)
     return rng.normal(0, 2, 2), rng.normal(0, 2, (2, 12)), 1.7
@@ -118,6 +127,32 @@ Q3 = Question(
             ),
             fingerprint=lambda f: [*f(*_fix(1)), *f(np.array([60.0, 0]), np.zeros((2, 1)), 1.0)],
             misconceptions=MUTANT["q3c"],
+        ),
+        Code(
+            id="q3d",
+            title="Weights from log-likelihoods",
+            reference=weights_of,
+            hints=(
+                "A constant added to all logarithms cancels when you normalise. Add a good one.",
+                "Subtract the largest logarithm before exp: then the best particle has exp(0) = 1.",
+                "w = np.exp(log_l - log_l.max()); w / w.sum().",
+            ),
+            properties=(
+                Property(
+                    "they sum to one, in the right proportions",
+                    lambda f: np.allclose(f(_LOGS), np.exp(_LOGS) / np.exp(_LOGS).sum()),
+                ),
+                Property(
+                    "a constant added to all changes nothing: the factor cancels",
+                    lambda f: np.allclose(f(_LOGS - np.log(2 * np.pi * 9.0)), f(_LOGS)),
+                ),
+                Property(
+                    "20,000 below zero they are still right",
+                    lambda f: np.allclose(f(_LOGS - 2e4), weights_of(_LOGS)),
+                ),
+            ),
+            fingerprint=lambda f: [*f(_LOGS), *np.nan_to_num(f(_LOGS - 2e4), nan=-1.0)],
+            misconceptions=MUTANT["q3d"],
         ),
     ),
 )

@@ -15,28 +15,29 @@ from pfkit.labs.items import (
 )
 from pfkit.labs.lab import Question
 from pfkit.labs.mutants import MUTANTS
-from pfkit.labs.statistics import rng_of
+from pfkit.labs.statistics import rng_of, shaped
 from pfkit.labs.target import TURN, around, target_log, track
 
 MUTANT = MUTANTS["lab3"]
 LINE = target_log("line", "high")
-WRONG = np.deg2rad(20.0)  # error of the assumed heading in Q1
 
 # -- Q1 ------------------------------------------------------------------------------------------
 
 
-def follow(D, rng, runs):
-    """Errors (300, runs) on the line, from a start whose heading is wrong by 20 degrees."""
-    start = LINE.start + np.array([0.0, 0.0, WRONG])
-    motion = pf.HeadingTarget(0.1, heading=start[2]) if D == 2 else pf.LineTarget(0.1, 0.02)
+def _started(D, rng, runs, wrong, sigma_theta=0.02):
+    start = LINE.start + np.array([0.0, 0.0, wrong])
+    motion = pf.HeadingTarget(0.1, heading=start[2]) if D == 2 else pf.LineTarget(0.1, sigma_theta)
     bel = around(start[:D], (runs, 200), rng)
     return track(LINE[:300], bel, motion, pf.Position(20.0), rng).error
 
 
+def follow(D, rng, runs):
+    """Errors (300, runs) on the line, from a start whose heading is wrong by 20 degrees."""
+    return _started(D, rng, runs, np.deg2rad(20.0))
+
+
 def _follow(f, rng, runs):
-    flat, full = np.asarray(f(2, rng, runs)), np.asarray(f(3, rng, runs))
-    if flat.shape != (300, runs) or full.shape != (300, runs):
-        raise ValueError(f"expected errors of shape (300, {runs}), got {flat.shape}, {full.shape}")
+    flat, full = (shaped(f(D, rng, runs), 300, runs) for D in (2, 3))
     return np.stack([e[k : k + 100].mean(axis=0) for e in (flat, full) for k in (0, 200)], axis=1)
 
 
@@ -95,6 +96,28 @@ Q1 = Question(
             ),
             misconceptions=(
                 Misconception(
+                    "degrees",
+                    "adds 20 to a heading in radians",
+                    (
+                        "Your fixed heading is off by 66 degrees: 20 rad less three turns.",
+                        "Headings are in radians.",
+                        "start = lab.line.start + np.array([0, 0, np.deg2rad(20)]).",
+                    ),
+                    lambda D, rng, runs: _started(D, rng, runs, 20.0),
+                    lambda x: x[:, 1].mean() > 150,
+                ),
+                Misconception(
+                    "always-three",
+                    "has the heading in the state in both cases",
+                    (
+                        "Your two errors agree. Does your function use D?",
+                        "For D = 2 nobody can question the heading.",
+                        "pf.HeadingTarget(0.1, heading=start[2]) for D = 2.",
+                    ),
+                    lambda D, rng, runs: follow(3, rng, runs),
+                    lambda x: x[:, 1].mean() < 12 and x[:, 0].mean() > 6,
+                ),
+                Misconception(
                     "right-heading",
                     "starts with the right heading, so there is nothing to recover from",
                     (
@@ -102,37 +125,24 @@ Q1 = Question(
                         "The question makes the assumed heading wrong by 20 degrees.",
                         "heading = lab.line.start[2] + np.deg2rad(20).",
                     ),
-                    lambda D, rng, runs: _right_heading(D, rng, runs),
-                    lambda x: x[:, 1].mean() < 12,
+                    lambda D, rng, runs: _started(D, rng, runs, 0.0),
+                    lambda x: x[:, 1].mean() < 12 and x[:, 0].mean() <= 6,
                 ),
                 Misconception(
                     "no-heading-noise",
-                    "gives the heading no noise, so no particle can try another",
+                    "cannot turn: with D = 3 its error is that of the fixed heading",
                     (
                         "Your 3-D filter starts with headings within .01 rad. How could it turn?",
                         "What a model can learn, its noise must be able to explore.",
                         "pf.LineTarget(0.1, 0.02): the second number is the sd of the heading.",
                     ),
-                    lambda D, rng, runs: _no_heading_noise(D, rng, runs),
+                    lambda D, rng, runs: _started(D, rng, runs, np.deg2rad(20.0), 0.0),
                     lambda x: x[:, 1].mean() > 30 and x[:, 3].mean() > 25,
                 ),
             ),
         ),
     ),
 )
-
-
-def _right_heading(D, rng, runs):
-    motion = pf.HeadingTarget(0.1, heading=LINE.start[2]) if D == 2 else pf.LineTarget(0.1, 0.02)
-    bel = around(LINE.start[:D], (runs, 200), rng)
-    return track(LINE[:300], bel, motion, pf.Position(20.0), rng).error
-
-
-def _no_heading_noise(D, rng, runs):
-    start = LINE.start + np.array([0.0, 0.0, WRONG])
-    motion = pf.HeadingTarget(0.1, heading=start[2]) if D == 2 else pf.LineTarget(0.1, 0.0)
-    bel = around(start[:D], (runs, 200), rng)
-    return track(LINE[:300], bel, motion, pf.Position(20.0), rng).error
 
 
 # -- Q2 ------------------------------------------------------------------------------------------

@@ -21,8 +21,16 @@ def diffuse(state, sigma, rng):
     return state + sigma * rng.standard_normal(state.shape)
 
 
-def _sample(f, M=4000, sigma=3.0):
-    return np.asarray(f(np.zeros((2, M)), sigma, rng_of(11)), dtype=float)
+def _sample(f, M=4000, sigma=3.0, at=0.0):
+    """The noise alone: what a cloud that starts at one place became, minus that place."""
+    return np.asarray(f(np.full((2, M), at), sigma, rng_of(11)), dtype=float) - at
+
+
+def _draws(f):
+    """Does chance come from rng, and afresh at each call?"""
+    one, two = rng_of(4), rng_of(4)
+    first, again, second = (f(np.zeros((2, 5)), 1.0, rng) for rng in (one, two, one))
+    return bool(np.array_equal(first, again) and not np.array_equal(first, second))
 
 
 Q6 = Question(
@@ -60,6 +68,11 @@ Q6 = Question(
             properties=(
                 Property("the shape stays (2, M)", lambda f: _sample(f).shape == (2, 4000)),
                 Property(
+                    "noise is added to the state",
+                    lambda f: abs(_sample(f, at=100.0).mean()) < 10,
+                ),
+                Property("its chance comes from rng, afresh at each call", _draws),
+                Property(
                     "sd 3 in x and in y, within 5 standard errors",
                     lambda f: (
                         np.abs(_sample(f).std(axis=1) - 3).max() < 5 * 3 / np.sqrt(8000)
@@ -79,6 +92,8 @@ Q6 = Question(
                 *_sample(f).std(axis=1),
                 *np.clip(_sample(f).mean(axis=1), -3, 3),
                 np.mean(_sample(f)[0] * _sample(f)[1]) if _sample(f).std() > 0.1 else 0.0,
+                float(_sample(f, at=100.0).mean() < -50),
+                2 * float(_draws(f) is True),
             ],
             atol=0.6,
             misconceptions=MUTANT["q6b"],

@@ -1,24 +1,20 @@
-"""Q4 and Q5: three resamplers, and who survives them."""
+"""Q4: random numbers, and the resamplers."""
 
 from __future__ import annotations
 
 import numpy as np
 
-import pfkit as pf
 from pfkit.labs.items import (
     Code,
-    Experiment,
     Misconception,
     Numeric,
     Property,
 )
 from pfkit.labs.lab import Question
 from pfkit.labs.mutants import MUTANTS
-from pfkit.labs.statistics import rng_of, z_of_share
+from pfkit.labs.statistics import rng_of
 
 MUTANT = MUTANTS["lab3"]
-
-# -- Q4 ------------------------------------------------------------------------------------------
 
 
 def systematic(w, rng):
@@ -45,6 +41,7 @@ def select(state, w, ancestors):
 
 
 W = np.array([0.40, 0.25, 0.15, 0.12, 0.08])
+W3 = np.array([0.32, 0.32, 0.36])
 W8 = np.array([0.02, 0.31, 0.09, 0.14, 0.05, 0.11, 0.21, 0.07])
 
 
@@ -90,7 +87,7 @@ def _floor_or_ceil(scheme, w):
 def _uses(scheme, w):
     rng = Counting(3)
     scheme(w.copy(), rng)
-    return rng.count == 1 or f"it used {rng.count}"
+    return rng.count == 1 or f"it used {rng.count} of rng"
 
 
 def _fingerprint(scheme):
@@ -130,6 +127,16 @@ Q4 = Question(
                         "Stratified uses M numbers.",
                     ),
                     (5, 1, 1, 2),
+                ),
+                Misconception(
+                    "stratified-and-systematic",
+                    "takes stratified for systematic and the other way round",
+                    (
+                        "Which of the two moves all its points together?",
+                        "Stratified: each of the M strata draws its own point.",
+                        "Systematic: one number moves the whole comb.",
+                    ),
+                    (5, 1, 5, 2),
                 ),
                 Misconception(
                     "residual-all",
@@ -184,7 +191,7 @@ Q4 = Question(
             hints=(
                 "First the certain copies: floor(M w).",
                 "Then draw the missing ones, in proportion to what each still has to get.",
-                "rest = M w - floor(M w); rng.choice(M, left, p=rest / rest.sum()).",
+                "rest = M w - floor(M w); if left > 0: rng.choice(M, left, p=rest / rest.sum()).",
             ),
             properties=(
                 _INDICES,
@@ -193,6 +200,14 @@ Q4 = Question(
                     lambda f: bool((_counts(f, W8, 100) >= np.floor(8 * W8)).all()),
                 ),
                 Property("M w copies on average", lambda f: _unbiased(f, W)),
+                Property(
+                    "the rest is drawn one by one: sometimes a particle gets two of it",
+                    lambda f: bool((_counts(f, W3, 100) >= np.floor(3 * W3) + 2).any()),
+                ),
+                Property(
+                    "equal weights: one copy of each, nothing left to draw",
+                    lambda f: bool((_counts(f, np.full(4, 0.25), 5) == 1).all()),
+                ),
             ),
             fingerprint=_fingerprint,
             atol=0.3,
@@ -237,193 +252,5 @@ Q4 = Question(
     ),
 )
 
-# -- Q5 ------------------------------------------------------------------------------------------
 
-
-def survival(w, M):
-    """Probability to survive one resampling: multinomial, systematic."""
-    return 1 - (1 - w) ** M, min(1.0, M * w)
-
-
-def survived(scheme, w, rng, runs):
-    """Does particle 0, of weight w among 100, survive? The others share the rest."""
-    weights = np.full(100, (1 - w) / 99)
-    weights[0] = w
-    return np.array([0 in scheme(weights, rng) for _ in range(runs)])
-
-
-CASES = tuple((s, w) for s in (pf.multinomial, pf.systematic) for w in (0.012, 0.005))
-CHANCES = tuple(survival(w, 100)[k] for k in (0, 1) for w in (0.012, 0.005))
-
-
-def _survived(f, rng, runs):
-    return np.stack([f(scheme, w, rng, runs) for scheme, w in CASES], axis=1)
-
-
-Q5 = Question(
-    "q5",
-    "Survival",
-    (
-        Numeric(
-            id="q5a",
-            title="Survival of w = .012 and w = .005 among M = 100: multinomial, systematic",
-            key=CHANCES,
-            tol=0.003,
-            names=(
-                "multinomial, w = .012",
-                "multinomial, w = .005",
-                "systematic, w = .012",
-                "systematic, w = .005",
-            ),
-            hints=(
-                "Multinomial: what is the probability that all 100 draws miss?",
-                "Systematic: compare the stretch w with the gap 1/M of the comb.",
-                "1 - (1 - w)^M, and min(1, M w).",
-            ),
-            misconceptions=(
-                Misconception(
-                    "sign-error",
-                    "has the sign of epsilon wrong, as one printed solution has: "
-                    "with w = 1/M + eps the miss is 1 - 1/M - eps",
-                    (
-                        "Should a heavier particle survive more often or less often?",
-                        "1 - w = 1 - 1/M - eps.",
-                        "1 - (1 - .012)^100.",
-                    ),
-                    (1 - 0.992**100, CHANCES[1], 1.0, 0.5),
-                ),
-                Misconception(
-                    "complement",
-                    "is the probability to die",
-                    (
-                        "Which of the two weights should survive more often?",
-                        "(1 - w)^M is the probability of M misses.",
-                        "Take one minus it.",
-                    ),
-                    tuple(1 - p for p in CHANCES),
-                ),
-                Misconception(
-                    "expected-copies",
-                    "is the expected number of copies M w (cut at 1) for both schemes",
-                    (
-                        "Two copies of one particle are one survivor.",
-                        "Multinomial can miss even a heavy particle.",
-                        "Multinomial: 1 - (1 - w)^M.",
-                    ),
-                    (1.0, 0.5, 1.0, 0.5),
-                ),
-                Misconception(
-                    "both-multinomial",
-                    "uses the multinomial formula for the comb",
-                    (
-                        "Can a comb with gaps of .010 miss a stretch of .012?",
-                        "A stretch shorter than the gap is hit with probability w / gap.",
-                        "Systematic: min(1, M w).",
-                    ),
-                    (CHANCES[0], CHANCES[1], CHANCES[0], CHANCES[1]),
-                ),
-            ),
-        ),
-        Code(
-            id="q5b",
-            title="Survival as a function",
-            reference=survival,
-            hints=(
-                "Return two numbers: multinomial, systematic.",
-                "One is a power, the other a minimum.",
-                "1 - (1 - w)**M, min(1, M * w).",
-            ),
-            properties=(
-                Property("all the weight survives for certain", lambda f: _is(f(1.0, 50), 1, 1)),
-                Property("no weight, no survival", lambda f: _is(f(0.0, 50), 0, 0)),
-                Property("w = .015, M = 100", lambda f: _is(f(0.015, 100), 1 - 0.985**100, 1.0)),
-                Property("w = .003, M = 100", lambda f: _is(f(0.003, 100), 1 - 0.997**100, 0.3)),
-            ),
-            fingerprint=lambda f: [x for w in (0.015, 0.003, 0.2) for x in f(w, 100)],
-            misconceptions=MUTANT["q5b"],
-        ),
-        Experiment(
-            id="q5c",
-            title="Survival, measured",
-            points=2,
-            claim="the measured shares agree with the closed forms",
-            test="|z| < 4.5 for each share that is neither 0 nor 1; the certain one is exactly 1",
-            runs=2000,
-            margin="4.5 standard errors, three shares: 2e-5 by the normal law",
-            measure=_survived,
-            reference=survived,
-            hints=(
-                "One True or False per run: is index 0 among the ancestors?",
-                "Give particle 0 the weight w and the other 99 the rest in equal parts.",
-                "np.array([0 in scheme(weights, rng) for _ in range(runs)]).",
-            ),
-            properties=(
-                Property("True or False", lambda x: bool(np.isin(x, (0, 1)).all())),
-                Property(
-                    "multinomial as computed",
-                    lambda x: (
-                        max(abs(z_of_share(x[:, k], CHANCES[k])) for k in (0, 1)) < 4.5
-                        or f"shares {x.mean(0)[:2].round(3)}"
-                    ),
-                ),
-                Property(
-                    "systematic as computed",
-                    lambda x: (
-                        (x[:, 2].all() and abs(z_of_share(x[:, 3], 0.5)) < 4.5)
-                        or f"shares {x.mean(0)[2:].round(3)}"
-                    ),
-                ),
-            ),
-            misconceptions=(
-                Misconception(
-                    "copies",
-                    "counts copies, where survival is yes or no",
-                    (
-                        "Some of your results are 2.",
-                        "A particle with two copies has survived once.",
-                        "0 in scheme(weights, rng) is True or False.",
-                    ),
-                    lambda scheme, w, rng, runs: np.array(
-                        [np.sum(scheme(_one_heavy(w), rng) == 0) for _ in range(runs)]
-                    ),
-                    lambda x: x.max() > 1,
-                ),
-                Misconception(
-                    "weights-not-normalised",
-                    "leaves the others at 1/100, so the weights do not sum to one",
-                    (
-                        "What do your weights sum to?",
-                        "If particle 0 has w, the others share 1 - w.",
-                        "weights = np.full(100, (1 - w) / 99); weights[0] = w.",
-                    ),
-                    lambda scheme, w, rng, runs: np.array(
-                        [0 in scheme(_others_kept(w), rng) for _ in range(runs)]
-                    ),
-                    lambda x: x[:, 0].mean() < 0.6 and 0.1 < x[:, 3].mean() < 0.4,
-                ),
-            ),
-        ),
-    ),
-)
-
-
-def _is(pair, a, b):
-    return bool(np.allclose([float(pair[0]), float(pair[1])], [a, b]))
-
-
-def _one_heavy(w):
-    weights = np.full(100, (1 - w) / 99)
-    weights[0] = w
-    return weights
-
-
-def _others_kept(w):
-    weights = np.full(100, 0.02)
-    weights[0] = w
-    return weights / weights.sum()
-
-
-QUESTIONS = (
-    Q4,
-    Q5,
-)
+QUESTIONS = (Q4,)

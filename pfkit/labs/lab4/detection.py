@@ -13,6 +13,7 @@ from pfkit.labs.items import (
 )
 from pfkit.labs.lab import Question
 from pfkit.labs.mutants import MUTANTS
+from pfkit.labs.statistics import shaped
 from pfkit.labs.target import AREA, around, target_log, track
 
 MUTANT = MUTANTS["lab4"]
@@ -45,9 +46,7 @@ def auc(score: np.ndarray, label: np.ndarray) -> float:
 
 
 def _aucs(f, rng, runs):
-    found = np.asarray(f(rng, runs), dtype=float)
-    if found.shape != (200, runs):
-        raise ValueError(f"expected scores of shape (200, {runs}), got {found.shape}")
+    found = shaped(f(rng, runs), 200, runs)
     return np.array([auc(found[:, k], IS_FALSE[:200]) for k in range(runs)])
 
 

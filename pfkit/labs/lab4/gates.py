@@ -14,6 +14,7 @@ from pfkit.labs.items import (
     Property,
 )
 from pfkit.labs.lab import Question
+from pfkit.labs.statistics import shaped
 from pfkit.labs.target import AREA, anywhere, around, target_log, track
 
 FILM = target_log("fixed", "low")
@@ -34,10 +35,7 @@ def rejected(variance, rng, runs):
 
 
 def _rejections(f, rng, runs):
-    rows = [np.asarray(f(v, rng, runs), dtype=float) for v in BELIEVED]
-    if any(r.shape != (runs,) for r in rows):
-        raise ValueError(f"expected one share per run, got shape {rows[0].shape}")
-    return np.stack(rows, axis=1)
+    return np.stack([shaped(f(v, rng, runs), runs) for v in BELIEVED], axis=1)
 
 
 Q15 = Question(
@@ -87,6 +85,17 @@ Q15 = Question(
             ),
             misconceptions=(
                 Misconception(
+                    "counts",
+                    "counts frames, where a share is asked for",
+                    (
+                        "A share lies between 0 and 1.",
+                        "Divide by the number of frames.",
+                        "run.rejected.mean(axis=0), not sum.",
+                    ),
+                    lambda v, rng, runs: 150 * rejected(v, rng, runs),
+                    lambda x: x.max() > 1,
+                ),
+                Misconception(
                     "accepted",
                     "gives the share that is accepted",
                     (
@@ -106,7 +115,29 @@ Q15 = Question(
                         "Start around the truth: lab.around(lab.film.start[:2], (runs, 300), rng).",
                     ),
                     lambda v, rng, runs: _rejected_from_anywhere(v, rng, runs),
-                    lambda x: x[:, 2:].mean() > 0.95,
+                    lambda x: x[:, 2:].mean() > 0.95 and x[:, 1].mean() > 0.02,
+                ),
+                Misconception(
+                    "variance-as-sd",
+                    "passes the variance where a standard deviation is wanted",
+                    (
+                        "Your gate is closed at 100 px^2 already. What is the sd there?",
+                        "pf.Position wants a standard deviation; you get a variance.",
+                        "pf.Position(np.sqrt(variance)).",
+                    ),
+                    lambda v, rng, runs: rejected(v**2, rng, runs),
+                    lambda x: x[:, 2:].mean() > 0.95 and x[:, 1].mean() <= 0.02,
+                ),
+                Misconception(
+                    "no-gate",
+                    "has a gate that is never closed",
+                    (
+                        "You reject nothing at any variance.",
+                        "Which argument of lab.track sets the threshold?",
+                        "gate=1e-4.",
+                    ),
+                    lambda v, rng, runs: np.zeros(runs),
+                    lambda x: x.max() == 0,
                 ),
             ),
         ),
@@ -191,10 +222,7 @@ def four_filters(rng, runs):
 
 
 def _four(f, rng, runs):
-    found = np.asarray(f(rng, runs), dtype=float)
-    if found.shape != (4, runs):
-        raise ValueError(f"expected shape (4, {runs}), got {found.shape}")
-    return found.T
+    return shaped(f(rng, runs), 4, runs).T
 
 
 def _middle(x):
@@ -249,7 +277,18 @@ Q16 = Question(
                         "gate=1e-4.",
                     ),
                     lambda rng, runs: four_filters(rng, runs)[[0, 1, 0, 0]],
-                    lambda x: _middle(x)[2] > 5 and _middle(x)[1] < 1,
+                    lambda x: 5 < _middle(x)[2] < 100 and _middle(x)[1] < 1,
+                ),
+                Misconception(
+                    "order",
+                    "returns the rows in another order",
+                    (
+                        "Which of your rows is above 100 px? It belongs at the end.",
+                        "Naive, mixture, gate from a known start, gate from anywhere.",
+                        "Return the rows in the order of the list in the question.",
+                    ),
+                    lambda rng, runs: four_filters(rng, runs)[[0, 2, 3, 1]],
+                    lambda x: _middle(x)[:3].max() > 100,
                 ),
                 Misconception(
                     "known-start-always",

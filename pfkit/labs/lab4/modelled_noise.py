@@ -13,19 +13,13 @@ from pfkit.labs.items import (
     Property,
 )
 from pfkit.labs.lab import Question
-from pfkit.labs.target import around, target_log, track
+from pfkit.labs.statistics import shaped
+from pfkit.labs.target import anywhere, around, target_log, track
 
 FILM = target_log("fixed", "low")
 HOME = FILM.start[:2]
 
 VARIANCES = (1e-4, 1e-2, 1.0, 100.0, 1e4)
-
-
-def _per_run(found, runs):
-    found = np.asarray(found, dtype=float)
-    if found.shape != (runs,):
-        raise ValueError(f"expected one number per run, shape ({runs},), got {found.shape}")
-    return found
 
 
 # -- Q9 ------------------------------------------------------------------------------------------
@@ -38,11 +32,11 @@ def sensor_sweep(variance, rng, runs):
     return track(FILM[:200], bel, motion, sensor, rng).error[50:].mean(axis=0)
 
 
-def linear_weights(variance, rng, runs):
-    """The same with weights in the linear domain; if all are zero, all count the same."""
-    state = np.stack([640 * rng.random((runs, 300)), 480 * rng.random((runs, 300))])
+def linear_weights(variance, rng, runs, M=300, frames=200):
+    """Errors (frames, runs) with weights in the linear domain; all zero becomes all equal."""
+    state = anywhere((runs, M), rng).state
     errors = []
-    for k in range(200):
+    for k in range(frames):
         state = state + 1.4 * rng.standard_normal(state.shape)
         nu = FILM.z[k].reshape(2, 1, 1) - state
         with np.errstate(under="ignore"):
@@ -51,11 +45,11 @@ def linear_weights(variance, rng, runs):
         ancestors = pf.systematic(w / w.sum(axis=1, keepdims=True), rng)
         state = np.take_along_axis(state, ancestors[None], axis=-1)
         errors.append(np.hypot(*(state.mean(axis=-1) - HOME[:, None])))
-    return np.mean(errors[50:], axis=0)
+    return np.array(errors)
 
 
 def _sensor(f, rng, runs):
-    return np.stack([_per_run(f(v, rng, runs), runs) for v in VARIANCES], axis=1)
+    return np.stack([shaped(f(v, rng, runs), runs) for v in VARIANCES], axis=1)
 
 
 def _column(x):
@@ -124,7 +118,29 @@ Q9 = Question(
                         "pf.Position(np.sqrt(variance)).",
                     ),
                     lambda v, rng, runs: sensor_sweep(v**2, rng, runs),
-                    lambda x: _column(x)[3] > 0.7 and _column(x)[0] < 5,
+                    lambda x: _column(x)[3] > 0.7 and 0.9 < _column(x)[1] < 2,
+                ),
+                Misconception(
+                    "variance-unused",
+                    "does not use the variance: all five errors are alike",
+                    (
+                        "Your five errors agree.",
+                        "The variance is what the sensor believes.",
+                        "pf.Position(np.sqrt(variance)).",
+                    ),
+                    lambda v, rng, runs: sensor_sweep(9.0, rng, runs),
+                    lambda x: np.ptp(_column(x)) < 0.1,
+                ),
+                Misconception(
+                    "process-noise",
+                    "varies the process noise instead of the sensor noise",
+                    (
+                        "Your error at .01 is smaller than at 100. Which noise did you change?",
+                        "The question changes what the sensor model believes.",
+                        "pf.FixedTarget(1.4) stays; pf.Position(np.sqrt(variance)) changes.",
+                    ),
+                    lambda v, rng, runs: _process_instead(v, rng, runs),
+                    lambda x: _column(x)[1] < 0.5 and _column(x)[4] > 3,
                 ),
                 Misconception(
                     "linear-weights",
@@ -134,7 +150,7 @@ Q9 = Question(
                         "All weights were 0, and 'all zero, so all equal' forgets the measurement.",
                         "Work with log-weights, as pf.update does.",
                     ),
-                    lambda v, rng, runs: linear_weights(v, rng, runs),
+                    lambda v, rng, runs: linear_weights(v, rng, runs)[50:].mean(axis=0),
                     lambda x: _column(x)[0] > 5,
                 ),
             ),
@@ -159,6 +175,13 @@ Q9 = Question(
     ),
 )
 
+
+def _process_instead(variance, rng, runs):
+    bel = around(HOME, (runs, 200), rng, sigma=20.0)
+    motion, sensor = pf.FixedTarget(np.sqrt(variance)), pf.Position(1.0)
+    return track(FILM[:200], bel, motion, sensor, rng).error[50:].mean(axis=0)
+
+
 # -- Q10 ------------------------------------------------------------------------------------------
 
 
@@ -171,9 +194,7 @@ def motion_sweep(variance, rng, runs):
 
 
 def _motion(f, rng, runs):
-    pairs = [np.asarray(f(v, rng, runs), dtype=float) for v in VARIANCES]
-    if any(p.shape != (2, runs) for p in pairs):
-        raise ValueError(f"expected two rows of {runs} numbers, got shape {pairs[0].shape}")
+    pairs = [shaped(f(v, rng, runs), 2, runs) for v in VARIANCES]
     return np.stack(pairs, axis=2).transpose(1, 0, 2)  # (runs, metric, variance)
 
 

@@ -26,6 +26,14 @@ def in_degrees(theta, w):
     return np.rad2deg(np.arctan2(np.sum(w * np.sin(t)), np.sum(w * np.cos(t))))
 
 
+def _as_degrees(mean):
+    """Are degrees taken for radians on the way in, on the way out, or both?"""
+    theta, w = np.array([0.4, 0.9, 2.0]), np.array([0.2, 0.5, 0.3])
+    right = np.arctan2(np.sum(w * np.sin(theta)), np.sum(w * np.cos(theta)))
+    both = in_degrees(theta, w)
+    return any(np.isclose(mean(theta, w), x) for x in (both, np.deg2rad(both), np.rad2deg(right)))
+
+
 CIRCULAR_MEAN = (
     Misconception(
         "arithmetic-mean",
@@ -76,6 +84,7 @@ CIRCULAR_MEAN = (
             "Remove deg2rad and rad2deg.",
         ),
         in_degrees,
+        _as_degrees,
     ),
 )
 

@@ -40,7 +40,37 @@ def hidden_floor(z, state, sigma):
     return np.log(np.exp(-(dx + dy) / (2 * sigma**2)) / (2 * np.pi * sigma**2) + 1e-300)
 
 
+def no_half(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return -(dx + dy) / sigma**2 - np.log(2 * np.pi * sigma**2)
+
+
+def not_the_logarithm(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return np.exp(-(dx + dy) / (2 * sigma**2)) / (2 * np.pi * sigma**2)
+
+
 LIKELIHOOD = (
+    Misconception(
+        "no-half",
+        "lacks the 1/2 in the exponent",
+        (
+            "Integrate your density over the image. You get one half.",
+            "Compare your exponent with the one in the question, factor by factor.",
+            "Exponent: -(dx^2 + dy^2) / (2 sigma^2).",
+        ),
+        no_half,
+    ),
+    Misconception(
+        "no-logarithm",
+        "returns the density itself, not its logarithm",
+        (
+            "Far away your value is 0. What should a logarithm be there?",
+            "The question asks for log p, which is negative and large far away.",
+            "Take the logarithm on paper: -(dx^2 + dy^2)/(2 sigma^2) - log(2 pi sigma^2).",
+        ),
+        not_the_logarithm,
+    ),
     Misconception(
         "averaged",
         "behaves like an average of the two likelihoods, where both must hold at once",

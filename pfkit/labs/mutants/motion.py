@@ -26,7 +26,49 @@ def not_negative(state, sigma, rng):
     return state + sigma * np.abs(rng.standard_normal(state.shape))
 
 
+def noise_alone(state, sigma, rng):
+    return sigma * rng.standard_normal(state.shape)
+
+
+def own_generator(state, sigma, rng):
+    return state + sigma * np.random.default_rng(0).standard_normal(state.shape)
+
+
+def root_of_deviation(state, sigma, rng):
+    return state + np.sqrt(sigma) * rng.standard_normal(state.shape)
+
+
 DIFFUSE = (
+    Misconception(
+        "noise-alone",
+        "returns the noise without the state",
+        (
+            "Start at (100, 100). Where does your cloud end up?",
+            "Noise is a step: it starts from where the particle is.",
+            "state + sigma * rng.standard_normal(state.shape).",
+        ),
+        noise_alone,
+    ),
+    Misconception(
+        "own-generator",
+        "takes its chance from elsewhere than rng, or the same at each call",
+        (
+            "Call it twice with one rng. Are the two clouds different, as they must be?",
+            "One generator, passed on, makes a run that is random and can be repeated.",
+            "Draw with rng, and make no generator of your own.",
+        ),
+        own_generator,
+    ),
+    Misconception(
+        "root",
+        "scales the noise by the root of sigma",
+        (
+            "Measure the spread for sigma = 3. Do you get 3?",
+            "sigma is a standard deviation already: no root is needed.",
+            "Multiply by sigma itself.",
+        ),
+        root_of_deviation,
+    ),
     Misconception(
         "shared-noise",
         "draws the noise once for all particles: the cloud moves as a block",

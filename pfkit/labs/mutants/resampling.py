@@ -32,6 +32,20 @@ def long_offset(w, rng):
     return np.minimum(np.searchsorted(np.cumsum(w), u), M - 1)
 
 
+def own_generator(w, rng):
+    M = len(w)
+    own = np.random.default_rng()
+    return np.minimum(np.searchsorted(np.cumsum(w), (np.arange(M) + own.random()) / M), M - 1)
+
+
+def _ignores_rng(scheme):
+    """Is it random, although it leaves the given generator where it was?"""
+    rng, w = np.random.default_rng(1), np.full(7, 1 / 7) + np.linspace(-0.1, 0.1, 7)
+    before = str(rng.bit_generator.state)
+    found = {tuple(scheme(w, rng)) for _ in range(30)}
+    return len(found) > 1 and str(rng.bit_generator.state) == before
+
+
 def no_chance(w, rng):
     M = len(w)
     return np.searchsorted(np.cumsum(w), (np.arange(M) + 0.5) / M)
@@ -98,6 +112,17 @@ SYSTEMATIC = (
         ),
         no_chance,
     ),
+    Misconception(
+        "own-generator",
+        "draws from another generator than the one it is given",
+        (
+            "Call it twice with np.random.default_rng(1). Should the results agree?",
+            "Nobody can repeat a run whose chance comes from elsewhere.",
+            "Draw with rng.random(), not with np.random.",
+        ),
+        own_generator,
+        _ignores_rng,
+    ),
 )
 
 
@@ -125,7 +150,23 @@ def rest_to_the_heaviest(w, rng):
     return np.repeat(np.arange(M), copies)
 
 
+def comb_for_the_rest(w, rng):
+    M = len(w)
+    points = (np.arange(M) + rng.random()) / M
+    return np.minimum(np.searchsorted(np.cumsum(w), points), M - 1)
+
+
 RESIDUAL = (
+    Misconception(
+        "systematic",
+        "is systematic resampling, or draws the rest with a comb",
+        (
+            "Can a particle get two of the copies that are left to chance? In yours it cannot.",
+            "Residual resampling draws what is missing independently.",
+            "Draw the rest with rng.choice(M, left, p=rest / rest.sum()).",
+        ),
+        comb_for_the_rest,
+    ),
     Misconception(
         "fraction-of-w",
         "subtracts the copies from w, where M w is meant (a slip printed in a popular library)",
@@ -171,6 +212,14 @@ def expected_copies(w, M):
     return M * w, M * w
 
 
+def above_one(w, M):
+    return 1 - (1 - w) ** M, M * w
+
+
+def swapped_schemes(w, M):
+    return min(1.0, M * w), 1 - (1 - w) ** M
+
+
 def both_alike(w, M):
     return 1 - (1 - w) ** M, 1 - (1 - w) ** M
 
@@ -205,6 +254,26 @@ SURVIVAL = (
             "Systematic: min(1, M w). Multinomial: 1 - (1 - w)^M.",
         ),
         expected_copies,
+    ),
+    Misconception(
+        "above-one",
+        "gives a probability above 1 for the comb",
+        (
+            "What does your second number say for w = .3 and M = 50?",
+            "A stretch longer than the gap of the comb is hit for certain.",
+            "Systematic survival is min(1, M w).",
+        ),
+        above_one,
+    ),
+    Misconception(
+        "order",
+        "returns systematic first",
+        (
+            "Which of your two numbers reaches 1 at w = 1/M?",
+            "The order asked for is: multinomial, systematic.",
+            "return 1 - (1 - w)**M, min(1, M * w).",
+        ),
+        swapped_schemes,
     ),
     Misconception(
         "both-alike",

@@ -95,7 +95,7 @@ BAD_MEAN = (
             "Half of the samples near -10, half near +10.",
         ),
         one_hill,
-        lambda f: _modes(f) == 1 and not _stray(f),
+        lambda f: _modes(f) == 1 and not _stray(f) and _low_at_mean(f) > 0.01,
     ),
     Misconception(
         "too-close",
@@ -106,7 +106,7 @@ BAD_MEAN = (
             "Hills of sd 1 at -10 and +10 leave nothing at 0.",
         ),
         hills_too_close,
-        lambda f: _modes(f) == 2,
+        lambda f: _modes(f) == 2 and _low_at_mean(f) > 0.01,
     ),
     Misconception(
         "stray",
@@ -117,7 +117,7 @@ BAD_MEAN = (
             "Half of the samples near -10, half near +10.",
         ),
         a_hill_and_a_stray,
-        lambda f: _modes(f) == 1 and _stray(f),
+        lambda f: _modes(f) == 1 and _stray(f) and _low_at_mean(f) > 0.01,
     ),
     Misconception(
         "middle-hill",
@@ -128,7 +128,7 @@ BAD_MEAN = (
             "Leave the middle hill out.",
         ),
         three_hills,
-        lambda f: _modes(f) >= 3,
+        lambda f: _modes(f) >= 3 and _low_at_mean(f) > 0.01,
     ),
 )
 
@@ -140,6 +140,14 @@ def _modes(f):
     height = np.exp(-0.5 * (grid[:, None] - x) ** 2).sum(1)
     high = height > 0.6 * height.max()
     return int(np.sum(np.diff(high.astype(int)) == 1) + high[0])
+
+
+def _low_at_mean(f):
+    """Density at the mean over the highest; kernels of sd 1."""
+    x = np.asarray(f(np.random.default_rng(5)), dtype=float)
+    at = np.append(x, x.mean())
+    height = np.exp(-0.5 * (at[:, None] - x) ** 2).sum(axis=1)
+    return height[-1] / height.max()
 
 
 def _stray(f):

@@ -126,4 +126,66 @@ SELECT = (
     ),
 )
 
-MUTANTS = {"lab3": {"p2b": ESTIMATE, "q4d": SELECT}}
+
+def exp_underflows(log_l):
+    w = np.exp(log_l)
+    return w / w.sum()
+
+
+def all_zero_all_equal(log_l):
+    w = np.exp(log_l)
+    return w / w.sum() if w.sum() > 0 else np.full(len(w), 1 / len(w))
+
+
+def best_is_one(log_l):
+    return np.exp(log_l - np.max(log_l))
+
+
+def logs_as_weights(log_l):
+    return log_l / np.sum(log_l)
+
+
+FROM_LOGS = (
+    Misconception(
+        "underflow",
+        "divides 0 by 0 where all likelihoods underflow",
+        (
+            "What is np.exp(-20000)? And the sum of such numbers?",
+            "Only differences between the logarithms matter.",
+            "Subtract the largest logarithm before you take exp.",
+        ),
+        exp_underflows,
+    ),
+    Misconception(
+        "all-equal",
+        "makes all weights equal where all likelihoods underflow: the measurement is forgotten",
+        (
+            "One of four particles is 16 times as likely as another. Do yours show it far away?",
+            "That repair hides the underflow; it does not undo it.",
+            "Subtract the largest logarithm before you take exp.",
+        ),
+        all_zero_all_equal,
+    ),
+    Misconception(
+        "not-normalised",
+        "gives the best particle the weight 1 and does not normalise",
+        (
+            "What do your weights sum to?",
+            "Subtracting the maximum is the first half of the work.",
+            "Divide by w.sum().",
+        ),
+        best_is_one,
+    ),
+    Misconception(
+        "logarithms",
+        "normalises the logarithms themselves",
+        (
+            "Your least likely particle has the largest weight.",
+            "A weight is proportional to the likelihood, not to its logarithm.",
+            "Take exp first, then divide by the sum.",
+        ),
+        logs_as_weights,
+    ),
+)
+
+MUTANTS = {"lab3": {"p2b": ESTIMATE, "q3d": FROM_LOGS, "q4d": SELECT}}

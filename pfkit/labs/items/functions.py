@@ -1,0 +1,182 @@
+"""C and X: functions, run by the check."""
+
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, ClassVar
+
+import numpy as np
+
+from pfkit.labs.guard import describe
+from pfkit.labs.items.base import Item, Judgement, Misconception, Property, tested
+from pfkit.labs.verdict import Line
+
+IN_PLACE = "It writes into its argument, so the caller's array changes, too: x = x + 1, not x += 1."
+
+
+class Called:
+    """A student's function, as properties see it.
+
+    A list or tuple of numbers comes back as an array; ``wrote`` tells whether an argument was
+    written into.
+    """
+
+    def __init__(self, function: Callable[..., Any]) -> None:
+        self._function, self.wrote = function, False
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        arrays = [(a, a.tobytes()) for a in args if isinstance(a, np.ndarray)]
+        found = self._function(*args, **kwargs)
+        self.wrote = self.wrote or any(a.tobytes() != was for a, was in arrays)
+        return as_array(found)
+
+
+def as_array(value: Any) -> Any:
+    """Numbers in a list or tuple, or parts of one shape, as an array; all else as it is."""
+    if not isinstance(value, list | tuple) or not value:
+        return value
+    if len({np.shape(part) for part in value}) > 1:
+        return value
+    found = np.asarray(value)
+    return found if found.dtype.kind in "biufc" else value
+
+
+def _not_a_function(answer: Any) -> Judgement:
+    line = Line("a function", False, f"I got a value of type {type(answer).__name__}")
+    return Judgement((line,), None, "Give the function itself, by its name and without brackets.")
+
+
+@dataclass(frozen=True, kw_only=True)
+class Code(Item):
+    """C: a function that must have the stated properties on random inputs.
+
+    Parameters
+    ----------
+    reference : callable
+        The right answer; lets the notebook carry on.
+    properties : tuple of Property
+    fingerprint : callable, optional
+        ``fingerprint(f)`` -> numbers that tell wrong implementations apart. A function whose
+        fingerprint equals that of a misconception's example "behaves like" it.
+    atol : float
+        Accepted difference between fingerprints.
+    """
+
+    letter: ClassVar[str] = "C"
+    reference: Any = None
+    properties: tuple[Property, ...] = ()
+    fingerprint: Callable[[Any], Any] | None = None
+    atol: float = 1e-9
+    _prints: dict = field(default_factory=dict, repr=False, compare=False)
+
+    def solution(self) -> Any:
+        return self.reference
+
+    def _told(self) -> tuple:
+        return tuple(p.says for p in self.properties)
+
+    def judge(self, answer: Any) -> Judgement:
+        if not callable(answer):
+            return _not_a_function(answer)
+        called = Called(answer)
+        lines = tuple(tested(p, called) for p in self.properties)
+        right = all(x.ok for x in lines)
+        mistake = None if right else self._recognise(called)
+        if called.wrote:
+            lines += (Line("leaves its arguments as they were", False),)
+        return Judgement(lines, mistake, IN_PLACE if called.wrote and not mistake else "")
+
+    def _fits(self, mistake: Misconception, evidence: Any) -> bool:
+        if mistake.when is not None:
+            return bool(mistake.when(evidence))
+        if self.fingerprint is None:
+            return False
+        if mistake.name not in self._prints:
+            self._prints[mistake.name] = self._print(Called(mistake.example))
+        theirs = self._print(evidence)
+        return theirs.shape == self._prints[mistake.name].shape and bool(
+            np.allclose(theirs, self._prints[mistake.name], rtol=0, atol=self.atol, equal_nan=True)
+        )
+
+    def _print(self, function: Called) -> np.ndarray:
+        assert self.fingerprint is not None
+        return np.asarray(self.fingerprint(function), dtype=float)
+
+
+def each_run(f: Callable, rng: np.random.Generator, runs: int) -> list:
+    """Call ``f(rng)`` once per run, each with a stream of its own."""
+    return [f(child) for child in rng.spawn(runs)]
+
+
+@dataclass(frozen=True, kw_only=True)
+class Experiment(Item):
+    """X: a claim about many runs of the student's experiment, tested with a declared error rate.
+
+    Parameters
+    ----------
+    claim : str
+        What must be seen, such as "the share falls with the number of particles".
+    test : str
+        Which statistic decides, and its threshold.
+    runs : int
+        How many runs a check makes.
+    measure : callable
+        ``measure(f, rng, runs)`` -> outcomes of the runs, an array whose first axis is the runs.
+        By default ``f(rng)`` is called once per run.
+    properties : tuple of Property
+        Decisions on the outcomes.
+    false_fail : float
+        Declared bound on the probability that a right experiment fails (at most 1e-3).
+    margin : str
+        Distance of the truth from the threshold, in standard errors.
+    """
+
+    letter: ClassVar[str] = "X"
+    claim: str
+    test: str
+    runs: int
+    measure: Callable[[Any, np.random.Generator, int], Any] = each_run
+    reference: Any = None
+    properties: tuple[Property, ...] = ()
+    false_fail: float = 1e-4
+    margin: str = ""
+    seed: int = 2024
+
+    def solution(self) -> Any:
+        return self.reference
+
+    def _told(self) -> tuple:
+        return (self.claim, self.test, self.runs)
+
+    def outcomes(self, answer: Any, runs: int, seed: int | None = None) -> np.ndarray:
+        """Measured outcomes, shape (runs, ...); raises ValueError if they make no sense."""
+        rng = np.random.default_rng(self.seed if seed is None else seed)
+        found = np.asarray(self.measure(answer, rng, runs), dtype=float)
+        if found.shape[:1] != (runs,):
+            raise ValueError(f"expected results of {runs} runs, got shape {found.shape}")
+        if not np.isfinite(found).all():
+            raise ValueError("some results are nan or infinite")
+        return found
+
+    def judge(self, answer: Any) -> Judgement:
+        if not callable(answer):
+            return _not_a_function(answer)
+        try:
+            found = self.outcomes(answer, self.runs)
+        except (Exception, SystemExit) as error:
+            return Judgement((Line("the experiment runs", False, describe(error)),))
+        return self.decide(found)
+
+    def decide(self, found: np.ndarray) -> Judgement:
+        """The decision alone, for given outcomes: this is what the replay tests repeat."""
+        lines = tuple(tested(p, found) for p in self.properties)
+        if all(x.ok for x in lines):
+            return Judgement(lines, None, self.declaration)
+        return Judgement(lines, self._recognise(found))
+
+    @property
+    def declaration(self) -> str:
+        """How it was tested, and how often a right answer would fail: told when it passes."""
+        return (
+            f"Tested over {self.runs} runs, seed {self.seed}: {self.test}. "
+            f"A right answer fails with a probability below {self.false_fail:g} ({self.margin})."
+        )
