@@ -437,13 +437,14 @@ why = Text(
     title="Why is a narrow proposal dangerous?",
     rubric=(
         "says that weights in the tails are unbounded or their variance infinite",
-        "says that such draws are rare, so a typical run does not see them",
+        "says that such draws are rare, so a typical run misses what they carry",
         "says that the ESS is computed from the draws in hand only",
     ),
     model=(
         "In its tails the weights grow without bound and their variance can be infinite. "
-        "Draws out there are so rare that a typical run has none, and its answer is wrong. "
-        "The effective sample size only sees the draws it has, so it looks fine."
+        "Draws out there are so rare that a typical run misses what they would have carried. "
+        "The effective sample size knows only the draws in hand: it overrates the set, and of a "
+        "place that none of them visited it says nothing."
     ),
 )
 
