@@ -9,6 +9,10 @@ Commands come from a list (open loop) or from a driver who looks where the robot
 (`PurePursuit`). And now and then somebody lifts the robot and puts it down elsewhere. That is
 the kidnapped robot problem: no control tells of it, and a filter that is sure of itself has no
 particle where the robot is now.
+
+The same density serves twice. Here it is drawn from once, for the robot; a filter draws from it
+for every particle. The log holds the commands as they were *given*. Whoever follows them without
+noise, by dead reckoning, leaves the true path just as fast as the model says.
 """
 
 from __future__ import annotations

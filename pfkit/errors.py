@@ -3,6 +3,14 @@
 Every public function checks its input once, at the boundary, and says three things:
 what was wrong, the value it got, and the remedy. All errors derive from `PfkitError`,
 which is a `ValueError`, so ``except ValueError`` still works for those who prefer it.
+
+A crash is the lesser evil. NumPy stretches arrays until they fit, so particles stored as
+``(M, 3)``, a standard deviation with one sign too many or a covariance that is none often run
+through and give a filter that converges, to something. So the checks look at shapes first and
+refuse what would have been stretched.
+
+Inside the package nothing is checked twice: functions that begin with an underscore, and
+`Particles.trusted`, take numbers that have passed the boundary.
 """
 
 from __future__ import annotations

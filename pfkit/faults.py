@@ -4,6 +4,12 @@ A landmark is measured only when it is near enough and in front of the robot (`S
 measurement may be false: a reflection, somebody's leg, a wrong bar code. `Outliers` replaces
 honest measurements by draws that know nothing of the pose, and keeps the labels. With labels a
 detector of outliers can be scored; on real data nobody knows them.
+
+Missing and false are different faults. A filter that gets no measurement stays as unsure as its
+motion made it, and does nothing wrong. A filter that gets a false one is lied to: if it multiplies
+a Gaussian density into its weights, one lie outvotes all that it knew. The first needs no remedy;
+for the second there are three in `pfkit.robust`. What is hidden is hidden after the draw: the
+same seed gives the same measurements to a robot that sees farther.
 """
 
 from __future__ import annotations

@@ -5,6 +5,11 @@ code, a radio beacon's number) knows which point it measured; that is *known ass
 The map also carries the bounding box of the area in which the robot can be, because "the
 robot may be anywhere" needs an *anywhere*: a prior that is tighter than the world silently
 adds information, and can even break a symmetry.
+
+Names are whole numbers that need not run from 0; those of a real arena are printed on its
+posts. `locate` looks them up in a sorted list, for any number of measurements at once, and an
+unknown name is an error: bar codes on a recorded log may belong to other robots.
+Where names are missing altogether, `pfkit.association` has to guess them.
 """
 
 from __future__ import annotations

@@ -4,6 +4,11 @@ A *tidy* table repeats the setting in every row. That looks wasteful and makes e
 simple: select rows by a condition, group them, write them to a file that any program reads.
 Here a table is a NumPy structured array, ``table["rmse"]`` its column.
 
+A table keeps every run. Whoever stores only means cannot ask later how far the runs scatter, or
+whether the one large error was one seed. `summarise` makes a statistic of each group *with its
+interval*, because a difference that is smaller than the interval is none; CSV files keep all
+digits, so that what was read is what was written.
+
 >>> t = tabulate({"M": [10, 10, 99, 99], "rmse": [3.0, 5.0, 1.0, 1.0]})
 >>> t["rmse"][t["M"] == 10]
 array([3., 5.])
