@@ -73,10 +73,16 @@ def covariance(bel: Particles) -> NDArray[np.float64]:
     ParameterError
         If `bel` is not a particle set.
     """
-    deviation = require_particles(bel).state - mean_pose(bel)[..., None]
+    d = deviation(bel)
+    return np.einsum("i...m,j...m,...m->ij...", d, d, bel.w)
+
+
+def deviation(bel: Particles) -> NDArray[np.float64]:
+    """Differences of particles to `mean_pose`, those of headings wrapped: (D, M) or (D, B, M)."""
+    difference = require_particles(bel).state - mean_pose(bel)[..., None]
     if bel.state.shape[0] >= 3:
-        deviation[2] = wrap(deviation[2])
-    return np.einsum("i...m,j...m,...m->ij...", deviation, deviation, bel.w)
+        difference[2] = wrap(difference[2])
+    return difference
 
 
 def map_particle(bel: Particles) -> NDArray[np.float64]:

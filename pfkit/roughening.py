@@ -25,7 +25,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import ParameterError, ShapeError, require_non_negative_number, require_rng
-from pfkit.estimators import covariance, mean_pose
+from pfkit.estimators import covariance, deviation
 from pfkit.geometry import wrap
 from pfkit.particles import Particles, require_particles
 
@@ -63,8 +63,7 @@ def roughen(
     where = _fresh(bel, where)
     require_rng(rng)
     K = require_non_negative_number("K", K)
-    deviation = _deviation(bel)
-    extent = deviation.max(axis=-1) - deviation.min(axis=-1)
+    extent = np.ptp(deviation(bel), axis=-1)
     scale = K * extent[..., None] * bel.M ** (-1 / len(bel.state))
     return _jitter(bel, scale * rng.standard_normal(bel.state.shape), where)
 
@@ -116,14 +115,6 @@ def _fresh(bel: Particles, where: ArrayLike) -> NDArray[np.bool_]:
             "where=info.resampled"
         )
     return chosen
-
-
-def _deviation(bel: Particles) -> Array:
-    """Differences to the mean, heading differences wrapped."""
-    deviation = bel.state - mean_pose(bel)[..., None]
-    if len(bel.state) >= 3:
-        deviation[2] = wrap(deviation[2])
-    return deviation
 
 
 def _jitter(bel: Particles, noise: Array, where: NDArray[np.bool_]) -> Particles:

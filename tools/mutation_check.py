@@ -124,8 +124,8 @@ MUTATIONS = [
     Mutation(
         "covariance-wrap",
         "estimators",
-        "deviation[2] = wrap(deviation[2])",
-        "deviation[2] = deviation[2]",
+        "difference[2] = wrap(difference[2])",
+        "difference[2] = difference[2]",
         "test_estimators",
     ),
 ]
