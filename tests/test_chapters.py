@@ -13,7 +13,8 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).resolve().parents[1]
-CHAPTERS = sorted((ROOT / "notebooks").glob("[0-9][0-9]_*.ipynb"))
+NOTEBOOKS = ROOT / "notebooks"
+CHAPTERS = sorted({*NOTEBOOKS.glob("[0-9][0-9]_*.ipynb")} - {*NOTEBOOKS.glob("00_*.ipynb")})
 
 SECTIONS = [
     "What you will be able to do",

@@ -12,7 +12,7 @@ import pfkit as pf
 from pfkit.labs import target
 
 ROOT = Path(__file__).parents[2]
-SELF_CONTAINED = ("ch01", "ch05", "ch06", "ch07", "ch10")
+SELF_CONTAINED = ("ch00", "ch01", "ch05", "ch06", "ch07", "ch10")
 
 
 def chapter_functions(number):

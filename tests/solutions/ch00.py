@@ -1,0 +1,18 @@
+# ruff: noqa
+# mypy: ignore-errors
+"""Solutions to the questions before chapter 1. One block per item; `# %% id` names its cell."""
+
+# %% column
+column = "b"
+
+# %% door
+door = 0.25 * 0.8 / (0.25 * 0.8 + 0.75 * 0.2)
+
+# %% spread
+spread = (0.1**2, 0.1 / 100**0.5)
+
+# %% landmark
+landmark = (1, 5, 0)
+
+# %% heading
+heading = "b"
