@@ -26,6 +26,7 @@ ROUTES = {
     "arena": np.array([[2.0, 8.0, 8.4, 5.0, 1.6], [2.4, 1.6, 6.0, 4.6, 6.6]]),
     "square": np.array([[7.5, 12.5, 12.5, 7.5, 2.5, 2.5], [2.5, 2.5, 12.5, 12.5, 12.5, 2.5]]),
 }
+CARRIED = 3.0  # metres; a kidnapper takes the robot at least so far
 RANGE_MAX = 12.0  # metres; false readings are uniform up to here
 
 
@@ -247,11 +248,15 @@ class Drive(Scene):
         self._build()
 
     def _carry_off(self, to: np.ndarray | None) -> None:
-        """Kidnap: the robot is put down elsewhere and the filter is not told."""
-        pose = self.world.sample_poses(1, self.rng)[:, 0] if to is None else to
-        self.truth = self._inside(np.array(pose))
+        """Kidnap: the robot is put down well away from here and the filter is not told."""
+        if to is None:
+            poses = self.world.sample_poses(100, self.rng)
+            away = np.hypot(*(poses[:2] - self.truth[:2, None]))
+            to = poses[:, np.argmax(away > CARRIED)]
+        self.truth = self._inside(np.array(to))
         self.kidnapped = True
         self.trail = [self.truth.copy()]
+        self._judge_filter()
 
     def _touch(self, x: float, y: float, phase: float) -> None:
         hand, at = self.values["hand"], np.array([x, y])

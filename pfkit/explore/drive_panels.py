@@ -349,8 +349,8 @@ PANELS = {
     "symmetry": Panel(
         "Four places that look the same",
         ("M", "scheme", "threshold", "noise", "trust", "sigma_r", "fifth", "names", *HANDS),
-        values={"world": "square", "show": "copies", "names": False, "sight": 22.0, "M": 1000,
-                "sigma_r": 0.5, "threshold": 0.7},
+        values={"world": "square", "show": "copies", "names": False, "sight": 22.0, "M": 2000,
+                "sigma_r": 1.0, "sigma_phi": 20.0, "threshold": 0.7},
         record=(416, 16),
         missions=(
             Mission(

@@ -121,8 +121,9 @@ class Mower(Scene):
             ("bias", "keep", "sigma_r", "start", "M", "begin"),
             missions=(
                 Mission(
-                    "Let it run for ten seconds, then forget the biases. Find a moment when the "
-                    f"spread is below {SURE:g} m and the error above {FAR:g} m.",
+                    "Let it run for ten seconds, then forget the biases and trust the ranges more: "
+                    f"1.5 m. Find a moment when the spread is below {SURE:g} m and the error "
+                    f"above {FAR:g} m.",
                     lambda s: s.values["bias"] is False and s.spread < SURE and s.error > FAR,
                 ),
                 Mission(
