@@ -3,8 +3,9 @@
 `offer` is called when a choice is still unanswered. It shows controls only if the cell was run by
 a person in a front end: JupyterLab, Notebook 7 and VS Code send the id of the cell with each
 request, programs that execute notebooks (nbclient, nbval, the grader) do not. So a stored notebook
-never holds a widget that nothing drives, and plain calls always work. ``PFKIT_WIDGETS=off``
-switches controls off, as it does for explorables.
+of the course never holds a widget that nothing drives; one that a student saved shows a sentence
+where no kernel runs (GitHub, nbviewer). Plain calls always work. ``PFKIT_WIDGETS=off`` switches
+controls off, as it does for explorables.
 
 With the keyboard: Tab from option to option, Space to choose, Tab and Space for the button
 (tried in JupyterLab, which keeps the arrow keys for itself).
@@ -45,7 +46,9 @@ def offer(lab: Lab, item: Item) -> bool:
         from IPython.display import display
     except ImportError:
         return False
-    display(build(lab, item, ipywidgets))
+    bundle = build(lab, item, ipywidgets)._repr_mimebundle_()
+    words = f"(a control of a running kernel; without it write {item.id} = ... in the cell above)"
+    display({**bundle, "text/plain": words}, raw=True)
     return True
 
 

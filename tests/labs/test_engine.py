@@ -421,13 +421,14 @@ def test_controls_are_offered_only_where_a_person_runs_the_cell(lab, monkeypatch
     shell = types.SimpleNamespace(kernel=kernel)
     shown = []
     monkeypatch.setattr("IPython.get_ipython", lambda: shell)
-    monkeypatch.setattr("IPython.display.display", shown.append)
+    monkeypatch.setattr("IPython.display.display", lambda data, raw: shown.append(data))
     lab.check("m", ...)  # nbclient, nbval, the grader
     assert not shown
     request["metadata"]["cellId"] = "c0"  # JupyterLab, Notebook 7, VS Code
     lab.check("m", ...)
     lab.predict("p", ...)
     assert len(shown) == 2
+    assert all("m = ... in the cell" in s["text/plain"] for s in shown[:1])
     lab.check("n", ...)  # a number needs no control
     lab.check("m", "b")  # answered
     monkeypatch.setenv("PFKIT_WIDGETS", "off")
