@@ -48,7 +48,7 @@ def nees(error: ArrayLike, Sigma: ArrayLike) -> Array:
     Raises
     ------
     ShapeError, ParameterError
-        If the shapes do not match, or a covariance is not positive definite.
+        If the shapes do not match, or a covariance is not symmetric and positive definite.
 
     Notes
     -----
@@ -60,6 +60,8 @@ def nees(error: ArrayLike, Sigma: ArrayLike) -> Array:
         raise ShapeError(f"error (D, ...) needs Sigma (D, D, ...): {error.shape}, {Sigma.shape}")
     columns = np.moveaxis(error, 0, -1)[..., None]
     matrices = np.moveaxis(Sigma, (0, 1), (-2, -1))
+    if not np.allclose(matrices, np.swapaxes(matrices, -2, -1)):
+        raise ParameterError(f"Sigma must be symmetric, got {Sigma!r:.60}; is it a covariance?")
     try:
         root = np.linalg.cholesky(matrices)
     except np.linalg.LinAlgError:

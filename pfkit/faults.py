@@ -27,6 +27,7 @@ from pfkit.errors import (
     require_fraction,
     require_instance,
     require_number,
+    require_rng,
 )
 from pfkit.geometry import wrap
 from pfkit.maps import LandmarkMap
@@ -99,10 +100,13 @@ class Outliers:
 
     def spoil(self, z: Array, rng: np.random.Generator) -> tuple[Array, NDArray[np.bool_]]:
         """Replace some columns of z (n, K, ...); also return their labels (K, ...)."""
+        require_rng(rng)
+        z, n = require_finite("z", z), len(self.low)
+        if z.ndim < 2 or n > z.shape[0]:
+            raise ShapeError(
+                f"z must have {n} rows or more, (n, K), got {z.shape}; shorten low, high"
+            )
         false = rng.random(z.shape[1:]) < self.epsilon
-        n = len(self.low)
-        if n > z.shape[0]:
-            raise ShapeError(f"outliers have {n} rows but z has {z.shape[0]}; shorten low, high")
         low = np.reshape(self.low, (n, *(1,) * (z.ndim - 1)))
         high = np.reshape(self.high, low.shape)
         draws = high - (high - low) * rng.random((n, *z.shape[1:]))

@@ -77,7 +77,7 @@ def linearise(
     """
     mean, Sigma = _moments(f, mean, Sigma)
     step = 1e-5 * np.eye(mean.size)
-    value = f(np.column_stack((mean, mean[:, None] + step, mean[:, None] - step)))
+    value = _values(f, np.column_stack((mean, mean[:, None] + step, mean[:, None] - step)))
     y, difference = value[:, 0], value[:, 1 : mean.size + 1] - value[:, mean.size + 1 :]
     J = wrap_rows(difference, angles) / 2e-5
     cross = Sigma @ J.T
@@ -104,7 +104,7 @@ def unscented(
     values, vectors = np.linalg.eigh(Sigma)
     root = vectors * np.sqrt(np.maximum(values, 0.0) * mean.size)
     deviation = np.hstack((root, -root))
-    value = f(mean[:, None] + deviation)
+    value = _values(f, mean[:, None] + deviation)
     y = value.mean(axis=1)
     for row in angles:
         y[row] = circular_mean(value[row])
@@ -208,6 +208,17 @@ def _moments(f: Function, mean: ArrayLike, Sigma: ArrayLike) -> tuple[Array, Arr
     if mean.ndim != 1 or Sigma.shape != (mean.size, mean.size):
         raise ShapeError(f"mean (N,) needs Sigma (N, N), got {mean.shape} and {Sigma.shape}")
     return mean, Sigma
+
+
+def _values(f: Function, points: Array) -> Array:
+    """The values (n, P) of a function at points (N, P), which may be a student's own."""
+    value = require_finite("the value of f", f(points))
+    if value.ndim != 2 or value.shape[1] != points.shape[1]:
+        raise ShapeError(
+            f"f must return values (n, {points.shape[1]}) at points {points.shape}, got "
+            f"{value.shape}; one column per point"
+        )
+    return value
 
 
 def _measure(sensor: Any, state: Array, rng: Any, which: dict[str, Any]) -> Array:

@@ -136,7 +136,8 @@ def inject(
     Raises
     ------
     ParameterError, ShapeError
-        If the share is not in [0, 1], or not one number or one per filter.
+        If the share is not in [0, 1], or not one number or one per filter, or draw does not
+        return as many states as there are particles.
     """
     require_particles(bel)
     require_rng(rng)
@@ -149,7 +150,10 @@ def inject(
     new = rng.random(bel.log_w.shape) < share[..., None]
     if not new.any():
         return bel, new
-    return Particles(np.where(new, draw(bel.log_w.shape, rng), bel.state), bel.log_w), new
+    fresh = require_finite("drawn states", draw(bel.log_w.shape, rng))
+    if fresh.shape != bel.state.shape:
+        raise ShapeError(f"draw must return states {bel.state.shape}, got {fresh.shape}")
+    return Particles(np.where(new, fresh, bel.state), bel.log_w), new
 
 
 def poses_seeing(z: ArrayLike, sensor: RangeBearing, M: Shape, rng: np.random.Generator) -> Array:

@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import (
+    ShapeError,
     require_fraction,
     require_method,
     require_non_negative_number,
@@ -143,12 +144,16 @@ class Gate(_Wrapper):
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one measurement, or 0 where the set rejects it: shape (...)."""
+        if np.ndim(pose) < 2:
+            raise ShapeError(f"a gate asks a set of particles (3, M), got shape {np.shape(pose)}")
         log_p = self.sensor.log_density(zk, pose)
         return np.where(_mean_density(log_p) >= self.threshold, log_p, 0.0)
 
     def accepts(self, z: ArrayLike, pose: Array) -> NDArray[np.bool_]:
         """Which measurements (n, K) a set of poses (3, M) lets pass: (K,), or (K, B)."""
         z, pose = self.read(z), self.check_state(pose)
+        if pose.ndim < 2:
+            raise ShapeError(f"a gate asks a set of particles (3, M), got shape {pose.shape}")
         means = [
             _mean_density(self.sensor.log_density(z[:, k], pose))[..., 0] for k in range(z.shape[1])
         ]

@@ -47,6 +47,7 @@ def test_coverage_of_honest_and_of_confident_claims():
     [
         (lambda: pf.nees(np.zeros(3), np.zeros((3, 3))), pf.ParameterError),
         (lambda: pf.nees(np.zeros(3), np.eye(2)), pf.ShapeError),
+        (lambda: pf.nees(np.ones(2), [[1.0, 0.9], [0.0, 1.0]]), pf.ParameterError),
         (lambda: pf.nees(np.full(3, np.nan), np.eye(3)), pf.ParameterError),
         (lambda: pf.nees_band(0, 10), pf.ParameterError),
         (lambda: pf.nees_band(3, 10, level=1.5), pf.ParameterError),

@@ -155,3 +155,12 @@ def test_noise_that_is_not_gaussian_is_named():
     mixture = pf.OutlierMixture(pf.Range(WORLD, 0.3), 0.1, 0.1)
     with pytest.raises(pf.ParameterError, match="gate"):
         pf.gaussian_update(START, [[3.0], [0]], mixture)
+
+
+@BOTH
+@pytest.mark.parametrize(
+    "f", [lambda x: x[0], lambda x: x[:, :1], lambda x: np.full_like(x, np.nan)]
+)
+def test_a_function_that_returns_something_else_is_named(transform, f):
+    with pytest.raises(pf.PfkitError, match="f"):
+        transform(f, np.zeros(2), np.eye(2))

@@ -133,6 +133,18 @@ def test_a_single_measurement_counts_as_one():
             lambda: pf.inject(pf.from_weights(np.ones((3, 4))), 1.5, WORLD.sample_poses, rng()),
             pf.ParameterError,
         ),
+        (
+            lambda: pf.inject(
+                pf.from_weights(np.ones((3, 4))), 1.0, lambda shape, rng: np.zeros(2), rng()
+            ),
+            pf.ShapeError,
+        ),
+        (
+            lambda: pf.inject(
+                pf.from_weights(np.ones((3, 4))), (0.1, 0.2), WORLD.sample_poses, rng()
+            ),
+            pf.ShapeError,
+        ),
         (lambda: pf.poses_seeing(np.empty((3, 0)), SENSOR, 5, rng()), pf.ParameterError),
         (lambda: pf.poses_seeing(np.ones((3, 1)), pf.Range(WORLD, 1), 5, rng()), pf.ParameterError),
         (lambda: pf.poses_seeing(np.ones((2, 1)), SENSOR, 5, rng()), pf.ShapeError),

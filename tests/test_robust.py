@@ -113,3 +113,10 @@ def test_wrappers_nest_and_pass_on_what_they_do_not_change():
 def test_bad_settings_are_named(make):
     with pytest.raises(pf.ParameterError, match="must be"):
         make()
+
+
+def test_a_gate_asks_a_set_not_one_pose():
+    gate, pose = pf.Gate(pf.Position(1.0), 0.01), np.array((1.0, 2.0, 0.0))
+    for call in (gate.log_likelihood, gate.accepts):
+        with pytest.raises(pf.ShapeError, match="set of particles"):
+            call([[1.0, 5.0], [2.0, 2.0]], pose)
