@@ -81,7 +81,8 @@ def _comb(w: Array, total: Array, n: int, u: Array) -> Indices:
     """
     bits = 62 - n.bit_length()
     ticks = 1 << bits
-    edges = np.cumsum((w * (n * ticks / total)).astype(np.int64), axis=-1)
+    edges = (w * (n * ticks / total)).astype(np.int64)
+    np.cumsum(edges, axis=-1, out=edges)
     tooth = (u * ticks).astype(np.int64)
     last = tooth[..., -1:]  # rounding must not leave it beyond the last edge
     np.minimum(last, edges[..., -1:] - (n - 1) * ticks - 1, out=last)
