@@ -22,6 +22,8 @@ there, the build says so and the pages keep recordings and stills.
 
 Cells of a notebook with the metadata ``answer`` become editors, and the check cells after them
 become their Check button. Nothing is written twice: the page gets the notebook's own code cells.
+A question that asks for a letter (`Choice`, `Prediction`) is answered with radio buttons; their
+texts are the lab's own, and they write the cell's code.
 
 Only pages with live parts load any of it.
 """
@@ -49,12 +51,14 @@ from pfkit.errors import PfkitError
 from pfkit.explore import scene as open_scene
 from pfkit.explore.record import record, to_script
 from pfkit.explore.still import to_svg
+from pfkit.labs.items import Choice, Prediction
 
 logger = logging.getLogger(__name__)
 ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
 SCRIPTS = ("palette.js", "render.js", "explorable.js", "page.js")
+STUB = re.compile(r"^(\w+) = \.\.\.\s*(#.*)?$")  # an answer cell that waits for a letter
 LAB_IMPORT = re.compile(r"^\s*from\s+pfkit\.labs\s+import\s+(\w+)(?:\s+as\s+(\w+))?", re.M)
 
 
@@ -147,15 +151,20 @@ def is_check(source: str, lab: str, item: str) -> bool:
     )
 
 
-def question_version(module: str, item: str) -> str:
-    """The version that the lab itself gives to a question."""
-    lab = import_module(f"pfkit.labs.{module}").LAB
-    if item not in lab.items:
+def question(module: str, item: str, source: str) -> dict[str, Any]:
+    """What the lab itself says of a question: its version, and the options it offers, if any."""
+    found = import_module(f"pfkit.labs.{module}").LAB.items.get(item)
+    if found is None:
         logger.warning(
             "live_page: pfkit.labs.%s has no item %r (cell metadata answer)", module, item
         )
-        return ""
-    return lab.items[item].version
+        return {"version": ""}
+    name = STUB.match(source)
+    if not name or not isinstance(found, Choice | Prediction):
+        return {"version": found.version}
+    options = [list(pair) for pair in found.options.items()]
+    choose = {"name": name[1], "options": options, "sure": isinstance(found, Prediction)}
+    return {"version": found.version, "choose": choose}
 
 
 def read_lab(cells: list[dict[str, Any]]) -> dict[str, Any] | None:
@@ -171,7 +180,7 @@ def read_lab(cells: list[dict[str, Any]]) -> dict[str, Any] | None:
         entry: dict[str, Any] = {"index": i, "source": sources[i], "kind": "code"}
         item = cell["metadata"].get("answer")
         if item:
-            entry.update(kind="answer", item=item, version=question_version(module, item))
+            entry.update(kind="answer", item=item, **question(module, item, sources[i]))
             open_item = item
         elif cell["metadata"].get("check") or (
             open_item and is_check(sources[i], alias, open_item)

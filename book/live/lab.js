@@ -71,6 +71,7 @@
       return 0;
     }
     let n = 0, old = 0;
+    adopt(data.predictions);
     for (const e of editors) {
       const entry = Object.prototype.hasOwnProperty.call(data.answers, e.cell.item)
         ? data.answers[e.cell.item] : null;
@@ -83,11 +84,97 @@
     return n;
   }
 
+  /* Predictions of a file or of the browser's store: a letter that exists, for what is still open. */
+  function adopt(found) {
+    for (const e of editors) {
+      const kept = found && typeof found === "object"
+        && Object.prototype.hasOwnProperty.call(found, e.cell.item) ? found[e.cell.item] : null;
+      const options = e.cell.choose ? e.cell.choose.options : [];
+      if (!kept || predictions[e.cell.item] || !options.some(([k]) => k === kept.choice)) continue;
+      const sure = Number.isFinite(kept.sure) ? kept.sure : null;
+      predictions[e.cell.item] = { choice: kept.choice, sure, version: String(kept.version) };
+      python.told = false; // Python must hear of it before it runs the next cell
+    }
+    storePredictions();
+    showLocks();
+  }
+
+  function showLocks() {
+    for (const e of editors) {
+      if (e.choices && predictions[e.cell.item]) e.lock(predictions[e.cell.item]);
+    }
+  }
+
+  function storePredictions() {
+    if (!Object.keys(predictions).length) return;
+    try {
+      localStorage.setItem(keyOf("*predictions"),
+        JSON.stringify({ schema: 1, lab: lab.lab, answers: {}, predictions }));
+    } catch { /* said when the answer was kept */ }
+  }
+
   /* The notebook's own file keeps the value of a short answer; the page needs the whole cell. */
   function asCell(cell, source) {
     const name = cell.source.match(/^\s*(\w+)\s*=/);
     const isStatement = /^\s*(def|class|import|from|@|#|"""|'''|\w+\s*=[^=])/m.test(source);
     return name && !isStatement ? `${name[1]} = ${source}` : source;
+  }
+
+  /* ---- an answer that is a letter ---------------------------------------------------------- */
+  /* Radio buttons that write the code of the answer, and read it: the code stays what is kept. */
+  class Choices {
+    constructor(answer) {
+      const { name, options, sure } = answer.cell.choose;
+      this.name = name;
+      this.radios = options.map(([letter]) => el("input", { type: "radio", value: letter,
+        name: `pf-choice-${answer.cell.item}`, onchange: () => answer.set(this.code()) }));
+      this.sure = sure && el("input", { type: "number", min: 0, max: 100, step: 1,
+        inputmode: "numeric", onchange: () => { this.tidySure(); answer.set(this.code()); } });
+      this.root = el("fieldset", { class: "pf-choices" },
+        el("legend", { class: "pf-sr" }, sure ? "Your prediction" : "Your answer"),
+        ...options.map(([letter, text], k) =>
+          el("label", {}, this.radios[k], el("span", {}, `(${letter}) ${text}`))),
+        sure ? el("label", { class: "pf-sure" }, "How sure are you? ", this.sure, " %") : null);
+    }
+
+    tidySure() {
+      const value = this.sure.valueAsNumber;
+      this.sure.value = Number.isFinite(value) ? Math.min(100, Math.max(0, Math.round(value))) : "";
+    }
+
+    code() {
+      const radio = this.radios.find((r) => r.checked);
+      const letter = radio ? `"${radio.value}"` : "...";
+      const sure = this.sure && this.sure.value;
+      return `${this.name} = ` + (sure ? `(${letter}, ${sure})` : letter);
+    }
+
+    /* Show what the code says; false if that is no letter of ours. */
+    read(text) {
+      const found = text.replace(/#.*$/gm, "").match(
+        /^\s*(\w+)\s*=\s*(?:\(\s*)?(?:["']([a-z])["']|\.\.\.)\s*(?:,\s*(\d+(?:\.\d+)?)\s*)?\)?\s*$/);
+      const mine = found && found[1] === this.name;
+      this.show(mine ? found[2] : null, mine ? found[3] : null);
+      return Boolean(mine);
+    }
+
+    show(letter, sure) {
+      for (const r of this.radios) r.checked = r.value === letter;
+      if (this.sure && document.activeElement !== this.sure) this.sure.value = sure ?? "";
+    }
+
+    lock({ choice, sure }) {
+      this.show(choice, sure);
+      this.root.disabled = true;
+    }
+  }
+
+  /* The list of options above the answer, if the controls repeat it word for word. */
+  function repeated(list, options) {
+    if (!list || list.tagName !== "UL") return false;
+    const plain = (text) => text.replace(/\s+/g, " ").trim();
+    return [...list.children].map((li) => plain(li.textContent)).join("\n")
+      === options.map(([letter, text]) => plain(`(${letter}) ${text}`)).join("\n");
   }
 
   /* ---- one answer cell -------------------------------------------------------------------- */
@@ -105,15 +192,28 @@
         title: "Ctrl+Enter", onclick: () => this.run(true) }, "Check");
       this.stopButton = el("button", { type: "button", class: "pf-stop", hidden: true,
         onclick: () => this.stop("stopped by you") }, "Stop");
-      const reset = el("button", { type: "button", title: "Back to the empty answer; undo brings yours back",
-        onclick: () => { this.set(cell.source); this.note.textContent = "Reset. Undo brings your answer back."; } },
-      "Reset");
+      const reset = el("button", { type: "button", title: "Back to the empty answer",
+        onclick: () => {
+          this.set(cell.source);
+          this.note.textContent = "Reset." + (cell.choose ? "" : " Undo brings your answer back.");
+        } }, "Reset");
+      this.resetButton = reset;
       this.offer = el("div", { class: "pf-row", hidden: true });
+      let code = this.editorBox;
+      if (cell.choose) {
+        this.choices = new Choices(this);
+        this.checkButton.textContent = cell.choose.sure ? "Lock prediction" : "Check";
+        code = this.disclosure = el("details", { class: "pf-code", ontoggle: () => this.arrange() },
+          el("summary", {}, "Show code"), this.editorBox);
+      }
       this.root = el("div", { class: "pf-answer", role: "group", "aria-label": `Answer ${cell.item}` },
         el("div", { class: "pf-row" }, el("span", { class: "pf-name" }, cell.item), this.note),
-        this.offer, this.editorBox,
-        el("div", { class: "pf-row" }, this.runButton, this.checkButton, reset, this.stopButton),
+        this.offer, this.choices ? this.choices.root : null, code,
+        this.buttons = el("div", { class: "pf-row" }, this.runButton, this.checkButton, reset,
+          this.stopButton),
         this.out);
+      const list = node.previousElementSibling;
+      if (cell.choose && repeated(list, cell.choose.options)) list.hidden = true;
       node.replaceWith(this.root);
       if (checkNode) checkNode.remove();
       this.text = cell.source;
@@ -121,6 +221,7 @@
       if (saved && saved.version === cell.version) this.text = saved.source;
       else if (saved) this.offerOld(saved);
       this.makeEditor();
+      if (this.choices) this.reflect();
       if (saved && saved.version === cell.version && saved.source !== cell.source) {
         this.note.textContent = "Your saved answer.";
       }
@@ -133,11 +234,36 @@
         onLeave: () => this.runButton.focus(),
         onChange: (text) => {
           this.text = text;
+          if (this.choices) this.reflect();
           clearTimeout(this.saving);
           this.saving = setTimeout(() => this.save(), 300);
         },
       };
       this.editor = window.PFEditor(this.editorBox, options);
+    }
+
+    /* The controls follow the code; code that they cannot show is opened. */
+    reflect() {
+      if (!this.locked && !this.choices.read(this.text)) this.disclosure.open = true;
+      this.arrange();
+    }
+
+    /* Who chooses by radio button needs Run only beside the code, and nothing once it is locked. */
+    arrange() {
+      const shown = this.disclosure.open;
+      this.runButton.hidden = !shown;
+      this.checkButton.hidden = !this.check || (this.locked && !shown);
+      this.resetButton.hidden = Boolean(this.locked);
+      this.buttons.hidden = Boolean(this.locked) && !shown;
+    }
+
+    lock(kept) {
+      this.locked = kept;
+      this.choices.lock(kept);
+      this.root.dataset.status = "predicted";
+      const sure = kept.sure == null ? "" : `, ${Math.round(kept.sure)} % sure`;
+      this.note.textContent = `Locked: (${kept.choice})${sure}.`;
+      this.arrange();
     }
 
     save() {
@@ -236,24 +362,25 @@
   /* Predictions are locked by the lab itself; the page keeps what it says and gives it back. */
   async function restorePredictions() {
     python.told = true;
-    try {
-      const text = localStorage.getItem(keyOf("*predictions"));
-      if (text) {
-        await python.ask({ do: "restore", lab: lab.lab, text });
-        predictions = JSON.parse(text).predictions || {};
-      }
-    } catch { /* nothing kept, or storage refused: the lab starts without predictions */ }
+    if (!Object.keys(predictions).length) return;
+    const text = JSON.stringify({ schema: 1, lab: lab.lab, answers: {}, predictions });
+    await python.ask({ do: "restore", lab: lab.lab, text });
   }
 
   async function keepPredictions() {
     const text = await python.ask({ do: "progress", lab: lab.lab });
     if (!text) return;
-    const data = JSON.parse(text);
-    predictions = data.predictions || {};
+    predictions = JSON.parse(text).predictions || {};
+    storePredictions();
+    showLocks();
+  }
+
+  function keptPredictions() {
     try {
-      localStorage.setItem(keyOf("*predictions"),
-        JSON.stringify({ schema: 1, lab: lab.lab, answers: {}, predictions }));
-    } catch { /* said when the answer was kept */ }
+      return JSON.parse(localStorage.getItem(keyOf("*predictions"))).predictions;
+    } catch {
+      return null; // nothing kept, or storage refused: the lab starts without predictions
+    }
   }
 
   /* ---- the page --------------------------------------------------------------------------- */
@@ -281,9 +408,10 @@
     for (const cell of answers) {
       const check = lab.cells.find((c) => c.kind === "check" && c.item === cell.item);
       const node = at(cell);
-      if (!editors.length) node.before(bar);
       editors.push(new Answer(cell, check, node, check && at(check)));
     }
+    editors[0].root.before(bar);
+    adopt(keptPredictions());
     new MutationObserver(() => {
       for (const e of editors) e.editor.theme(PF.isDark(e.root));
     }).observe(document.documentElement, { attributes: true, attributeFilter: ["data-theme"] });

@@ -65,6 +65,10 @@ def lab_notebook() -> str:
     """A notebook of three questions of lab 3 and two cells that only this test has."""
     import nbformat
 
+    from pfkit.labs.lab3 import LAB
+
+    options = LAB.items["p1a"].options
+    listed = "\n".join(f"* ({letter}) {says}" for letter, says in options.items())
     cell, text = nbformat.v4.new_code_cell, nbformat.v4.new_markdown_cell
 
     def pair(item: str, stub: str, name: str, verb: str = "check"):
@@ -77,6 +81,7 @@ def lab_notebook() -> str:
         text("# A lab"),
         cell("import matplotlib.pyplot as plt\nimport numpy as np\nimport pfkit as pf\n"
              "from pfkit.labs import lab3 as lab"),
+        text(f"What are the particles?\n\n{listed}"),
         *pair("p1a", "p1a = ...", "p1a"),
         *pair("p4a", "p4a = ...", "p4a", "predict"),
         *pair("p5b", 'def circular_mean(theta, w):\n    """Mean direction."""\n    ...',

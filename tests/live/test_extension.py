@@ -49,6 +49,21 @@ def test_cells_of_a_lab(live_page):
     assert len(found["cells"][1]["version"]) >= 8
 
 
+def test_letters_to_choose_come_from_the_lab(live_page):
+    from pfkit.labs.lab3 import LAB
+
+    def asked(item, source):
+        return live_page.question("lab3", item, source).get("choose")
+
+    options = [list(pair) for pair in LAB.items["p1a"].options.items()]
+    assert asked("p1a", "p1a = ...  # a letter") == {
+        "name": "p1a", "options": options, "sure": False
+    }  # fmt: skip
+    assert asked("p4a", "p4a = ...")["sure"] is True
+    assert asked("p5b", "p5b = ...") is None  # wants a function
+    assert asked("p1a", "p1a = 1\nprint(p1a)") is None  # no stub that a letter could fill
+
+
 def test_a_notebook_without_answers_is_no_lab(live_page):
     assert live_page.read_lab([cell("from pfkit.labs import lab3 as lab")]) is None
     assert live_page.read_lab([cell("x = 1", answer="q")]) is None

@@ -52,6 +52,19 @@ class Lab:
         self.press(item, button)
         return self.wait(item)
 
+    def locked(self, item):
+        """Its prediction is (a), 70 % sure, and cannot be changed."""
+        group = self.group(item)
+        assert group.get_by_label("(a)").is_checked() and group.get_by_label("(b)").is_disabled()
+        assert "Locked: (a), 70 % sure." in group.inner_text()
+        assert not group.get_by_role("button").count()
+
+    def group(self, item):
+        return self.tab.get_by_role("group", name=f"Answer {item}", exact=True)
+
+    def code(self, item):
+        return self.tab.evaluate(f"{self.find(item)}.get()")
+
     def note(self):
         return self.tab.locator(".pf-labbar .pf-note").inner_text()
 
@@ -85,9 +98,69 @@ def test_an_error_names_the_line(lab):
     assert "ZeroDivisionError: division by zero (line 1)" in lab.answer("p1a", "p1a = 1 / 0")
 
 
+def test_a_letter_is_chosen_and_writes_the_code(lab):
+    from pfkit.labs.lab3 import LAB
+
+    group, options = lab.group("p1a"), LAB.items["p1a"].options
+    lab.write("p1a", "p1a = ...")
+    assert group.get_by_role("radio").count() == len(options)
+    for letter, says in options.items():
+        assert group.get_by_label(f"({letter}) {says}").count() == 1
+    group.get_by_label("(b)").check()
+    assert lab.code("p1a") == 'p1a = "b"'
+    group.get_by_role("button", name="Check").click()
+    right = LAB.items["p1a"].key == "b"
+    assert f"p1a: {'passed' if right else 'wrong'}" in lab.wait("p1a")
+
+
+def test_the_list_above_is_not_read_twice(lab):
+    above = lab.tab.locator("ul", has_text="(a)")
+    assert above.count() == 1 and not above.is_visible()
+
+
+def test_code_and_buttons_say_the_same(lab):
+    group = lab.group("p1a")
+    lab.write("p1a", "p1a = 'c'  # I think")
+    assert group.get_by_label("(c)").is_checked()
+    lab.write("p1a", "p1a = ...")
+    assert not group.get_by_role("radio", checked=True).count()
+    lab.tab.evaluate(f"{lab.find('p1a')}.disclosure.open = false")
+    assert not group.locator(".cm-content").is_visible()
+    lab.write("p1a", 'p1a = "b".lower()')  # what the buttons cannot show is shown as code
+    group.locator(".cm-content").wait_for(state="visible")
+    assert not group.get_by_role("radio", checked=True).count()
+
+
+def test_a_choice_is_made_by_keyboard_alone(lab):
+    group, keys = lab.group("p1a"), lab.tab.keyboard
+    lab.write("p1a", "p1a = ...")
+    lab.tab.evaluate(f"{lab.find('p1a')}.disclosure.open = false")
+    group.get_by_role("radio").first.focus()
+    keys.press("Space")
+    keys.press("ArrowDown")
+    assert lab.code("p1a") == 'p1a = "b"' and group.get_by_label("(b)").is_checked()
+    names = []
+    for _ in range(3):
+        keys.press("Tab")
+        names.append(lab.tab.evaluate("document.activeElement.textContent"))
+    assert names == ["Show code", "Check", "Reset"]
+
+
 def test_a_prediction_is_locked(lab):
-    assert "70 % sure; locked" in lab.answer("p4a", 'p4a = ("a", 70)')
-    assert "it stays (a)" in lab.answer("p4a", 'p4a = ("b", 70)')
+    group = lab.group("p4a")
+    group.get_by_label("(a)").check()
+    group.get_by_label("How sure are you?").fill("170")
+    group.get_by_label("How sure are you?").blur()
+    assert lab.code("p4a") == 'p4a = ("a", 100)'
+    group.get_by_label("How sure are you?").fill("70")
+    group.get_by_role("button", name="Lock prediction").click()
+    assert "70 % sure; locked" in lab.wait("p4a")
+    assert lab.code("p4a") == 'p4a = ("a", 70)'
+    lab.locked("p4a")
+    lab.write("p4a", 'p4a = ("b", 70)')
+    lab.tab.evaluate(f"{lab.find('p4a')}.run(true)")
+    assert "it stays (a)" in lab.wait("p4a")
+    lab.locked("p4a")
 
 
 def test_run_prints_and_keyboard_runs(lab):
@@ -98,7 +171,7 @@ def test_run_prints_and_keyboard_runs(lab):
 
 
 def test_escape_leaves_the_editor(lab):
-    lab.tab.evaluate(f"{lab.find('p1a')}.editor.focus()")
+    lab.tab.evaluate(f"{lab.find('p5b')}.editor.focus()")
     lab.tab.keyboard.press("Escape")
     lab.tab.keyboard.press("Tab")
     assert lab.tab.evaluate("document.activeElement.textContent") != ""
@@ -106,12 +179,14 @@ def test_escape_leaves_the_editor(lab):
 
 
 def test_reset_can_be_undone(lab):
-    lab.write("p1a", "p1a = 'c'")
-    lab.press("p1a", "Reset")
-    assert lab.tab.evaluate(f"{lab.find('p1a')}.get()") == "p1a = ..."
-    lab.tab.evaluate(f"{lab.find('p1a')}.editor.focus()")
+    stub = lab.tab.evaluate(f"{lab.find('p5b')}.cell.source")
+    lab.write("p5b", AVERAGE)
+    lab.press("p5b", "Reset")
+    assert lab.code("p5b") == stub
+    lab.tab.evaluate(f"{lab.find('p5b')}.editor.focus()")
     lab.tab.keyboard.press("Control+z")
-    assert lab.tab.evaluate(f"{lab.find('p1a')}.get()") == "p1a = 'c'"
+    assert lab.code("p5b") == AVERAGE
+    lab.write("p5b", CIRCULAR)
 
 
 def test_output_is_text_whatever_it_says(lab):
@@ -121,12 +196,15 @@ def test_output_is_text_whatever_it_says(lab):
 
 def test_a_reload_restores_the_answers(lab):
     lab.write("p1a", "p1a = 'b'  # kept")
+    lab.write("p5b", CIRCULAR)
     lab.tab.wait_for_function("Object.keys(localStorage).some(k => k.endsWith('/p1a'))")
     lab.tab.wait_for_timeout(400)
     lab.tab.reload()
     lab.tab.wait_for_function("window.PF && PF.lab")
     assert lab.tab.evaluate(f"{lab.find('p1a')}.get()") == "p1a = 'b'  # kept"
     assert lab.tab.evaluate(f"{lab.find('p5b')}.get()") == CIRCULAR
+    assert lab.group("p1a").get_by_label("(b)").is_checked()
+    lab.locked("p4a")  # before any Python
 
 
 def test_a_hang_is_stopped_and_names_come_back(lab):
@@ -144,7 +222,9 @@ def test_a_hang_is_stopped_and_names_come_back(lab):
     assert "stopped after 2 s" in lab.wait("p5b")
     lab.tab.evaluate("PF.lab.limit.seconds = 30")
     assert "p5b: passed" in lab.answer("p5b", CIRCULAR)
-    assert "it stays (a)" in lab.answer("p4a", 'p4a = ("c", 70)')  # the prediction came back too
+    lab.write("p4a", 'p4a = ("c", 70)')
+    lab.tab.evaluate(f"{lab.find('p4a')}.run(true)")
+    assert "it stays (a)" in lab.wait("p4a")  # the prediction came back too
 
 
 def test_a_hang_does_not_stop_the_explorables(lab):
@@ -254,6 +334,28 @@ def test_an_answer_to_an_older_question_is_offered_not_lost(lab):
 
 def test_nothing_left_the_page(lab):
     assert not lab.page.outside() and not lab.page.errors
+
+
+@pytest.mark.parametrize(
+    ("prediction", "locked"),
+    [
+        ({"choice": "<b>", "sure": 50}, False),
+        ({"choice": "z", "sure": 50}, False),
+        (["a"], False),
+        ("a", False),
+        ({"choice": "c", "sure": "<img src=x onerror=alert(1)>", "version": {}}, True),
+    ],
+)
+def test_predictions_are_imported_as_data(open_page, prediction, locked):
+    page = open_page("lab.html")
+    fresh = Lab(page)
+    data = {"schema": 1, "lab": "lab3", "answers": {}, "predictions": {"p4a": prediction}}
+    fresh.tab.evaluate(f"PF.lab.importAnswers({json.dumps(json.dumps(data))})")
+    assert fresh.group("p4a").get_by_label("(c)").is_checked() is locked
+    assert fresh.group("p4a").get_by_label("(c)").is_disabled() is locked
+    kept = fresh.tab.evaluate("PF.lab.exportAnswers().predictions")
+    assert list(kept) == (["p4a"] if locked else []) and not page.errors
+    page.tab.context.close()
 
 
 def test_refused_storage_is_said_and_loses_nothing(open_page):
