@@ -57,10 +57,8 @@ class SensorModel(Protocol):
 
 def how_many(z: ArrayLike | None) -> int:
     """Number K of measurements in a set (n, K, ...): 0 for None, 1 for a single one (n,)."""
-    if z is None or np.size(z) == 0:
-        return 0
-    shape = np.shape(z)
-    return shape[1] if len(shape) > 1 else 1
+    shape = (0,) if z is None else np.shape(z)
+    return 0 if 0 in shape else shape[1] if len(shape) > 1 else 1
 
 
 def log_gaussian(error: ArrayLike, sigma: float) -> Array:
