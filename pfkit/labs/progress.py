@@ -36,10 +36,14 @@ def parse(text: str, lab: str) -> dict[str, Any]:
         sure = kept.get("sure")
         clean["predictions"][item] = {
             "choice": str(kept.get("choice", "")),
-            "sure": float(sure) if isinstance(sure, int | float) else None,
+            "sure": float(sure) if _is_per_cent(sure) else None,
             "version": str(kept.get("version", "")),
         }
     return clean
+
+
+def _is_per_cent(sure: Any) -> bool:
+    return isinstance(sure, int | float) and 0 <= sure <= 100  # nan is no number of per cent
 
 
 def _entries(data: dict[str, Any], part: str) -> list[tuple[str, dict[str, Any]]]:

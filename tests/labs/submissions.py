@@ -7,6 +7,7 @@ import copy
 import json
 import os
 import re
+import zipfile
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -101,6 +102,11 @@ def sparse(path):
         file.truncate(200_000_000)
 
 
+def much_output(book):
+    stored = {"output_type": "stream", "name": "stdout", "text": "x" * 10_000_000}
+    cell_of(book, "p1b")["outputs"] = [stored]
+
+
 def old_format(book):
     book["nbformat"] = 3
 
@@ -108,6 +114,21 @@ def old_format(book):
 def export(answers, lab="lab3", predictions=None):
     kept = {i: {"source": s, "version": "0"} for i, s in answers.items()}
     return {"schema": 1, "lab": lab, "answers": kept, "predictions": predictions or {}}
+
+
+def windows(path):
+    text = json.dumps(answered(), indent=1).replace("\n", "\r\n")
+    path.write_bytes(b"\xef\xbb\xbf" + text.encode())
+
+
+def archive(path):
+    with zipfile.ZipFile(path, "w") as file:
+        file.writestr("lab3.ipynb", json.dumps(answered()))
+
+
+def by_hand():
+    data = export(RIGHT, predictions={"p4a": {"choice": "c", "sure": float("nan")}})
+    return data | {"answers": data["answers"] | {"p1b": {"source": 12345}}}
 
 
 def latin(path):
@@ -141,6 +162,11 @@ def cases(precious, tag):
         "saved.json": (export({"p1a": "'c'", "p1b": "array([0.75, 0.316, 0.0563])"}), "ok", ""),
         "generator.ipynb": (
             answered(p2b="def estimate(v, t, p):\n    while True:\n        yield 1"), "ok", ""),
+        "Right.ipynb": (answered(), "ok", ""),
+        "windows.ipynb": (windows, "ok", ""),
+        "by hand.json": (by_hand(), "ok", "another version"),
+        "two\nlines.ipynb": (answered(), "ok", ""),
+        "10 MB of output.ipynb": (answered(much_output), "ok", ""),
         "thread.ipynb": (before(
             "import threading, time\nthreading.Thread(target=time.sleep, args=(60,)).start()"),
             "ok", ""),
@@ -188,6 +214,7 @@ def cases(precious, tag):
         "os._exit.ipynb": (before("import os\nos._exit(0)"), "crashed", "code 0 in p1b"),
         "exits in a check.ipynb": (
             answered(p2b="import os\ndef estimate(v, t, p): os._exit(3)"), "crashed", "in p2b"),
+        "closes all.ipynb": (before("import os\nos.closerange(0, 99)"), "crashed", "in p1b"),
         "segfault.ipynb": (before("import ctypes\nctypes.string_at(0)"), "crashed", "-11"),
         "abort.ipynb": (before("import os\nos.abort()"), "crashed", "-6"),
         # not a submission of this lab
@@ -197,6 +224,8 @@ def cases(precious, tag):
         "list.ipynb": (b"[]", "malformed", "list"),
         "cells.ipynb": (b'{"nbformat": 4, "cells": 7}', "malformed", "cells"),
         "sources.ipynb": (b'{"nbformat": 4, "cells": [{"source": 7}]}', "malformed", "source"),
+        "zipped.ipynb": (archive, "malformed", "unpack it"),
+        "zipped.zip": (archive, "malformed", "unpack it"),
         "nbformat 3.ipynb": (answered(old_format), "malformed", "nbformat is 3"),
         "lab4.ipynb": (LAB4.read_bytes(), "malformed", "notebook of lab4"),
         "stranger.ipynb": (b'{"nbformat": 4, "cells": []}', "malformed", "something else"),
@@ -242,6 +271,10 @@ def cases(precious, tag):
             "import os\nif os.fork() == 0:\n    os.setsid()\n    if os.fork() == 0:\n        "
             + bounded.replace("\n", "\n        ") + "\n    os._exit(0)"),
             "review", "1 of its processes ran on"),
+        "50 forks.ipynb": (before(
+            "import os, time\nfor _ in range(50):\n    if os.fork() == 0:\n"
+            "        time.sleep(100)\n        os._exit(0)"),
+            "review", "50 of its processes ran on"),
         "program outlives.ipynb": (before(
             "import subprocess\n"
             f"subprocess.Popen(['sleep', '{tag}'], start_new_session=True, env={{}})"),

@@ -16,8 +16,11 @@ from pfkit.labs.lab import Lab
 def arguments(words: list[str] | None = None) -> argparse.Namespace:
     parser = argparse.ArgumentParser(
         prog="python -m pfkit.labs.grade",
-        description="Grade a folder of notebooks or exported answers; one row each.",
-        epilog="Not a sandbox: answers run with your rights. The instructor guide says more.",
+        description="Grade a folder of notebooks or exported answers; one row each. Writes the "
+        "grades, and beside them statistics of the items (_items.csv), a page for each submission "
+        "(_reports/) and the journal of --resume (.jsonl).",
+        epilog="Exit code 0 if each submission has its row, whatever it holds. Not a sandbox: "
+        "answers run with your rights. The instructor guide says more.",
     )
     add = parser.add_argument
     add("lab", help="such as lab3 or ch07")

@@ -101,6 +101,9 @@ def _load(path: Path) -> Any:
         about = path.lstat()
         if not stat.S_ISREG(about.st_mode):
             raise Malformed("not a regular file (a link, a pipe or a device)")
+        with path.open("rb") as file:
+            if file.read(4) == b"PK\x03\x04":
+                raise Malformed("an archive: unpack it first")
         if path.suffix not in SUFFIXES:
             raise Malformed("neither a notebook (.ipynb) nor exported answers (.json)")
         if about.st_size > BIGGEST:

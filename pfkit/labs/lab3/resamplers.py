@@ -235,16 +235,18 @@ Q4 = Question(
                     lambda f: np.ptp(f(np.zeros((2, 5)), W, np.array([0, 0, 1, 2, 3]))[1]) < 1e-12,
                 ),
                 Property(
-                    "weights sum to one",
-                    lambda f: np.isclose(
-                        np.sum(f(np.zeros((2, 5)), W, np.array([0, 0, 1, 2, 3]))[1]), 1
+                    "weights sum to one, also for 3 ancestors of 5 particles",
+                    lambda f: all(
+                        np.isclose(np.sum(f(np.zeros((2, 5)), W, np.array(a))[1]), 1)
+                        for a in ([0, 0, 1, 2, 3], [0, 0, 3])
                     ),
                 ),
             ),
             fingerprint=lambda f: np.concatenate(
                 [
                     np.ravel(x)
-                    for x in f(rng_of(1).normal(size=(2, 5)), W, np.array([0, 0, 1, 4, 3]))
+                    for a in ([0, 0, 1, 4, 3], [0, 0, 3])
+                    for x in f(rng_of(1).normal(size=(2, 5)), W, np.array(a))
                 ]
             ),
             misconceptions=MUTANT["q4d"],

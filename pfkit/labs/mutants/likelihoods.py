@@ -151,7 +151,21 @@ def by_the_sum(likelihood, threshold):
     return np.sum(likelihood) < threshold
 
 
+def by_the_worst(likelihood, threshold):
+    return np.min(likelihood) < threshold
+
+
 GATE = (
+    Misconception(
+        "worst-particle",
+        "asks the worst particle only",
+        (
+            "One stray particle closes your gate on every honest measurement.",
+            "The belief as a whole decides, not one particle of it.",
+            "Compare the mean of the likelihoods with the threshold.",
+        ),
+        by_the_worst,
+    ),
     Misconception(
         "best-particle",
         "asks the best particle only",
@@ -211,7 +225,21 @@ def larger_of_two(likelihood, epsilon, area):
     return np.maximum((1 - epsilon) * likelihood, epsilon / area)
 
 
+def times_area(likelihood, epsilon, area):
+    return (1 - epsilon) * likelihood + epsilon * area
+
+
 MIXTURE = (
+    Misconception(
+        "times-area",
+        "multiplies by the area, where a uniform density divides by it",
+        (
+            "Make the image larger. Should a false report at one place become more probable?",
+            "A density that is the same everywhere integrates to one: 1/area.",
+            "The outlier part is epsilon / area.",
+        ),
+        times_area,
+    ),
     Misconception(
         "swapped",
         "gives epsilon to the honest part",

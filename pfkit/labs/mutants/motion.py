@@ -145,7 +145,25 @@ def sine_for_cosine(state, dt):
     return np.stack([*ahead, wrap(theta + omega * dt), v, omega])
 
 
+def along_the_arc(state, dt):
+    x, y, theta, v, omega = state
+    later = theta + omega * dt
+    ahead = [x + v / omega * (np.sin(later) - np.sin(theta))]
+    ahead += [y - v / omega * (np.cos(later) - np.cos(theta))]
+    return np.stack([*ahead, wrap(later), v, omega])
+
+
 CIRCLE = (
+    Misconception(
+        "arc",
+        "drives along the exact arc, and divides by omega",
+        (
+            "The question moves the position straight ahead, before the turn.",
+            "An arc is more exact, and fails at omega = 0. This model takes short straight steps.",
+            "x + v dt cos(theta), y + v dt sin(theta), with the old theta.",
+        ),
+        along_the_arc,
+    ),
     Misconception(
         "turn-first",
         "turns before it drives",

@@ -156,7 +156,23 @@ def comb_for_the_rest(w, rng):
     return np.minimum(np.searchsorted(np.cumsum(w), points), M - 1)
 
 
+def rest_for_all_alike(w, rng):
+    M = len(w)
+    copies = np.floor(M * w + 1e-12).astype(int)
+    return np.concatenate([np.repeat(np.arange(M), copies), rng.integers(0, M, M - copies.sum())])
+
+
 RESIDUAL = (
+    Misconception(
+        "rest-uniform",
+        "draws the rest with equal chances for all",
+        (
+            "In w = (.40, .25, .15, .12, .08) particle 0 has all it is owed. Can it get one more?",
+            "Some particles are owed more of the rest than others.",
+            "Draw with p = rest / rest.sum(), rest = M w - floor(M w).",
+        ),
+        rest_for_all_alike,
+    ),
     Misconception(
         "systematic",
         "is systematic resampling, or draws the rest with a comb",

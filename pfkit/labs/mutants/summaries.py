@@ -25,7 +25,21 @@ def no_half(x, samples, h):
     return np.mean(np.exp(-((_d(x, samples) / h) ** 2)), axis=1) / (np.sqrt(2 * np.pi) * h)
 
 
+def wrong_axis(x, samples, h):
+    return np.mean(np.exp(-0.5 * (_d(x, samples) / h) ** 2), axis=0) / (np.sqrt(2 * np.pi) * h)
+
+
 KDE = (
+    Misconception(
+        "wrong-axis",
+        "averages over x instead of over the samples",
+        (
+            "How many numbers come back for 7 places and 4 samples?",
+            "At each place, average over the samples.",
+            "With x[:, None] - samples, take the mean over axis 1.",
+        ),
+        wrong_axis,
+    ),
     Misconception(
         "no-bandwidth",
         "does not divide by the bandwidth, so it integrates to h",
@@ -85,7 +99,22 @@ def three_hills(rng):
     return np.concatenate([rng.normal(m, 1, 200) for m in (-15, 0, 15)])
 
 
+def spread_evenly(rng):
+    return rng.uniform(0, 100, 400)
+
+
 BAD_MEAN = (
+    Misconception(
+        "even",
+        "is spread evenly: the mean is as good a place as any other",
+        (
+            "How high is your density at the mean, compared with elsewhere?",
+            "A wide belief alone does not make the mean a bad place.",
+            "Leave a gap around the mean: half of the samples near -10, half near +10.",
+        ),
+        spread_evenly,
+        lambda f: _even(f) and _low_at_mean(f) > 0.3,
+    ),
     Misconception(
         "one-hill",
         "is a single hill, and its mean is its best point",
@@ -140,6 +169,12 @@ def _modes(f):
     height = np.exp(-0.5 * (grid[:, None] - x) ** 2).sum(1)
     high = height > 0.6 * height.max()
     return int(np.sum(np.diff(high.astype(int)) == 1) + high[0])
+
+
+def _even(f):
+    """Is the sd that of a uniform law over the range, range / sqrt(12)?"""
+    x = np.asarray(f(np.random.default_rng(5)), dtype=float)
+    return abs(x.std() / np.ptp(x) - 12**-0.5) < 0.03
 
 
 def _low_at_mean(f):

@@ -22,7 +22,21 @@ def not_normalised(values, target, proposal):
     return np.mean(target / proposal * values)
 
 
+def mean_weight(values, target, proposal):
+    return np.mean(target / proposal)
+
+
 ESTIMATE = (
+    Misconception(
+        "mean-weight",
+        "averages the weights and forgets the values",
+        (
+            "Shift all values by 10. What should happen to the estimate?",
+            "A weight says how much a value counts; the value must appear, too.",
+            "Return sum(w * values) / sum(w).",
+        ),
+        mean_weight,
+    ),
     Misconception(
         "inverse-ratio",
         "divides the proposal by the target: the weights are upside down",
@@ -83,7 +97,21 @@ def states_kept(state, w, ancestors):
     return state, np.full(len(ancestors), 1 / len(ancestors))
 
 
+def old_number(state, w, ancestors):
+    return state[:, ancestors], np.full(len(ancestors), 1 / len(w))
+
+
 SELECT = (
+    Misconception(
+        "old-number",
+        "divides by the number of old particles, not of new ones",
+        (
+            "Draw 3 ancestors of 5 particles. Do your 3 weights sum to 1?",
+            "n is the number of ancestors.",
+            "np.full(len(ancestors), 1 / len(ancestors)).",
+        ),
+        old_number,
+    ),
     Misconception(
         "weights-kept",
         "keeps the old weights after resampling",
@@ -145,6 +173,11 @@ def logs_as_weights(log_l):
     return log_l / np.sum(log_l)
 
 
+def wrong_sign(log_l):
+    w = np.exp(np.min(log_l) - log_l)
+    return w / w.sum()
+
+
 FROM_LOGS = (
     Misconception(
         "underflow",
@@ -185,6 +218,16 @@ FROM_LOGS = (
             "Take exp first, then divide by the sum.",
         ),
         logs_as_weights,
+    ),
+    Misconception(
+        "sign",
+        "has the sign of the exponent wrong",
+        (
+            "Which particle has the largest log-likelihood, and which the largest weight?",
+            "The likelihood is exp(log_l), not exp(-log_l).",
+            "w = np.exp(log_l - log_l.max()).",
+        ),
+        wrong_sign,
     ),
 )
 
