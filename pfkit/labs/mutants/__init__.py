@@ -8,10 +8,20 @@ function in the module of its concept and append a `Misconception` to the tuple 
 """
 
 from pfkit.labs.items import Misconception
-from pfkit.labs.mutants import angles, likelihoods, motion, resampling, summaries, weights
+from pfkit.labs.mutants import (
+    angles,
+    likelihoods,
+    motion,
+    outliers,
+    resampling,
+    summaries,
+    survival,
+    weights,
+)
 
 MUTANTS: dict[str, dict[str, tuple[Misconception, ...]]] = {"lab3": {}, "lab4": {}}
-for module in (angles, likelihoods, motion, resampling, summaries, weights):
+MODULES = (angles, likelihoods, motion, outliers, resampling, summaries, survival, weights)
+for module in MODULES:
     for lab, items in module.MUTANTS.items():
         MUTANTS[lab].update(items)
 
