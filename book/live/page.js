@@ -152,6 +152,8 @@
   }
 
   function start() {
+    const header = document.querySelector(".bd-header-article");
+    if (header) document.documentElement.style.setProperty("--pf-top", `${header.offsetHeight}px`);
     const roots = [...document.querySelectorAll(".pf-explorable[data-recording]")];
     const near = new IntersectionObserver((entries) => {
       for (const e of entries) {

@@ -33,7 +33,7 @@ def draw_drive(s: Drive, pen: Pen) -> None:
         x, y, theta = s.copies()[:, 1:]
         pen.ellipses("muted", x, y, 0.45, 0.45, width=1.5, dash=3)
         pen.quills("muted", x, y, theta, length=24)
-    pen.robots("truth", *s.truth, radius=0.22)
+    pen.robots("truth", *s.truth, radius=0.18)
     if alone:
         return
     draw_estimate(s, pen)

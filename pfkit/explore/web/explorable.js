@@ -222,10 +222,17 @@
     }
 
     observe() {
-      new ResizeObserver(() => {
-        const width = Math.floor(this.canvas.parentElement.clientWidth);
+      const stage = this.canvas.parentElement;
+      const fit = () => {
+        const width = Math.floor(stage.clientWidth);
         if (width > 0 && width !== this.renderer.width) this.renderer.resize(width);
-      }).observe(this.canvas.parentElement);
+        /* The picture stays in sight above its controls, if that leaves room for them. */
+        const height = stage.offsetHeight;
+        this.root.classList.toggle("pf-follow", height > 0 && height < 0.55 * innerHeight);
+        this.root.style.setProperty("--pf-stage", `${height}px`);
+      };
+      new ResizeObserver(fit).observe(stage);
+      addEventListener("resize", fit);
       new IntersectionObserver((entries) => {
         this.visible = entries[entries.length - 1].isIntersecting;
       }).observe(this.canvas);
