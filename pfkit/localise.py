@@ -13,6 +13,13 @@ then left alone. Three things about them are worth knowing.
 * The errors have Student's t with four degrees of freedom: one bar code that was misread must
   not overrule everything else.
 * Commands are not measurements. What is not calibrated must be paid for as noise (`Drift`).
+
+A global start needs two things more. The first measurement may be false, and a cloud that
+gathers around it is lost; so one measurement in a thousand may come from anywhere
+(`OutlierMixture`), which keeps a few particles elsewhere. A larger share would doubt true
+measurements, too, and be slow where landmarks are few. And a wide cloud is weighed in stages
+(`tempered_update`), a narrow one plainly: a cloud that has found the robot must not walk after
+a false measurement.
 """
 
 from __future__ import annotations
@@ -33,6 +40,7 @@ from pfkit.filters import predict, select, update
 from pfkit.geometry import compose
 from pfkit.landmark_sensors import Range, RangeBearing
 from pfkit.log import Log
+from pfkit.maps import LandmarkMap
 from pfkit.odometry import (
     ComposedMotion,
     Drift,
@@ -44,6 +52,7 @@ from pfkit.odometry import (
 from pfkit.particles import Particles
 from pfkit.priors import gaussian_prior, uniform_prior
 from pfkit.resampling import systematic
+from pfkit.robust import OutlierMixture
 from pfkit.sensors import Sensor
 from pfkit.tempering import tempered_update
 
@@ -145,7 +154,7 @@ def localise(
     batch : int, how many filters run side by side
     settings : Settings, optional; `settings_for` the log if left out
     plain : bool
-        Weigh plainly from a global start, too, instead of in stages: to see what happens.
+        Weigh plainly from a global start, too, and believe every measurement: to see what happens.
     every_row : bool
         One prediction per step instead of one per measurement: to see that it is the same.
     watch : function (k, n), called after step k of n
@@ -176,10 +185,21 @@ def localise(
     short = compose_odometry(log, settings.drift, steps)
     first = float(log.t[log.first_measured()])
     began = time.perf_counter()
-    estimate, Sigma = _filter(short, bel, settings.sensor, rng, start == "known" or plain, watch)
+    sensor, staged = settings.sensor, np.inf
+    if start == "global" and not plain:
+        sensor, staged = _doubtful(sensor, log.world), settings.limit
+    estimate, Sigma = _filter(short, bel, sensor, rng, staged, watch)
     seconds = time.perf_counter() - began
     estimate, sd = fill_in(log, settings.drift, np.append(0, steps + 1), estimate, Sigma)
     return Track(estimate, sd, first, seconds)
+
+
+def _doubtful(sensor: Sensor, world: LandmarkMap, share: float = 0.001) -> Sensor:
+    """The sensor, but a share of its measurements comes from anywhere on the map."""
+    x0, x1, y0, y1 = world.bounds
+    farthest = np.hypot(x1 - x0, y1 - y0)
+    circle = 2 * np.pi if sensor.components == 3 else 1.0  # range alone has no bearing
+    return OutlierMixture(sensor, share, 1 / (circle * farthest))
 
 
 def _filter(
@@ -187,7 +207,7 @@ def _filter(
     bel: Particles,
     sensor: Sensor,
     rng: np.random.Generator,
-    plain: bool,
+    staged: float,
     watch: Watch | None,
 ) -> tuple[Array, Array]:
     """Answers (3, T + 1, B) and covariances (3, 3, T + 1, B), from before the first step on."""
@@ -196,7 +216,7 @@ def _filter(
     for k, (_, u, z, _) in enumerate(log):
         bel = predict(bel, u, motion, rng)
         if z.shape[1]:
-            bel = update(bel, z, sensor)[0] if plain else tempered_update(bel, z, sensor, rng)[0]
+            bel = _weigh(bel, z, sensor, rng, staged)
         answers.append(mean_pose(bel))
         spreads.append(covariance(bel))
         if z.shape[1]:
@@ -204,6 +224,17 @@ def _filter(
         if watch is not None:
             watch(k + 1, len(log))
     return np.stack(answers, axis=1), np.stack(spreads, axis=2)
+
+
+def _weigh(
+    bel: Particles, z: Array, sensor: Sensor, rng: np.random.Generator, staged: float
+) -> Particles:
+    """Weigh plainly; in stages those filters whose cloud is still wider than `staged` metres."""
+    Sigma = covariance(bel)
+    lost = Sigma[0, 0] + Sigma[1, 1] > staged**2
+    if not lost.any():
+        return update(bel, z, sensor)[0]
+    return tempered_update(bel, z, sensor, rng, np.where(lost, 0.5, 0.0))[0]
 
 
 def _resample_poor(bel: Particles, rng: np.random.Generator) -> Particles:

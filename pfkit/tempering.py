@@ -29,7 +29,9 @@ from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import (
     DataError,
+    ShapeError,
     as_numbers,
+    require_finite,
     require_fraction,
     require_method,
     require_non_negative,
@@ -52,7 +54,7 @@ def tempered_update(
     z: ArrayLike | None,
     sensor: SensorModel,
     rng: np.random.Generator,
-    keep: float = 0.5,
+    keep: ArrayLike = 0.5,
     kernel: float = 0.3,
     scheme: Resampler = systematic,
 ) -> tuple[Particles, NDArray[np.int64]]:
@@ -67,7 +69,7 @@ def tempered_update(
     z : array_like (n, K), or None for no measurement
     sensor : SensorModel
     rng : numpy.random.Generator
-    keep : float in [0, 1]
+    keep : float in [0, 1], or array_like (B,), one for each filter of a batch
         The share of M that the effective sample size must keep in a stage; 0 is plain weighting.
     kernel : float >= 0
         The kernel's width rho, in units of the cloud's own spread.
@@ -86,7 +88,7 @@ def tempered_update(
     """
     require_particles(bel)
     require_method("sensor", sensor, "log_likelihood")
-    require_fraction("keep", keep)
+    keep = _require_shares(keep, bel.log_w.shape[:-1])
     require_non_negative("kernel", kernel)
     stages = np.zeros(bel.log_w.shape[:-1], dtype=np.int64)
     z = None if z is None else as_numbers("z", z, DataError)
@@ -105,7 +107,17 @@ def tempered_update(
         bel = _spread_out(bel, left > 0, kernel, scheme, rng)
 
 
-def _largest_step(log_w: Array, log_p: Array, wanted: float, left: Array) -> Array:
+def _require_shares(keep: ArrayLike, filters: tuple[int, ...]) -> Array:
+    """`keep` as an array of one share, or of one for each filter."""
+    shares = require_finite("keep", keep)
+    if shares.ndim and shares.shape != filters:
+        raise ShapeError(f"keep must be one number or have shape {filters}, got {shares.shape}")
+    for share in shares.flat:
+        require_fraction("keep", share)
+    return shares
+
+
+def _largest_step(log_w: Array, log_p: Array, wanted: Array, left: Array) -> Array:
     """The largest exponent <= left that keeps ESS >= wanted, per filter, to a tenth of itself."""
     log_p = log_p - log_p.max(axis=-1, keepdims=True)
     low, high, middle = np.zeros_like(left), left, left

@@ -53,6 +53,32 @@ def test_the_twin_global_start(twin):
     assert s.rmse.mean() < 0.15
 
 
+def spoiled(log, share, rng):
+    """The log with a share of its measurements replaced by whatever the camera could report."""
+    z = [np.array(zk) for zk in log.z]
+    for zk in z:
+        false = rng.random(zk.shape[1]) < share
+        n = false.sum()
+        zk[:, false] = rng.uniform(1, 6, n), rng.uniform(-0.5, 0.5, n), rng.choice(log.world.ids, n)
+    return replace(log, z=z, outlier=None)
+
+
+@pytest.mark.slow
+def test_a_global_start_survives_false_measurements(twin, monkeypatch):
+    """One in five is false, the first one, too; four seeds; errors from 20 s on."""
+    first, last = np.searchsorted(twin.t, (100, 145))
+    log = spoiled(twin[first:last], 0.2, np.random.default_rng(100))
+
+    def rmse():
+        settings = settings_for(log)
+        track = localise(log, np.random.default_rng(0), "global", 1500, 4, settings=settings)
+        return score(log, track.estimate, settings.limit, track.first + 20).rmse
+
+    assert (rmse() < 0.2).all()
+    monkeypatch.setattr("pfkit.localise._doubtful", lambda sensor, world: sensor)
+    assert rmse().mean() > 0.5  # what happens to a filter that believes every measurement
+
+
 def test_plaza_with_and_without_its_biases(plaza):
     _, biased = run(plaza, seeds=5)
     _, fitted = run(plaza, seeds=5, calibration=calibrate_first(plaza, 136.5))

@@ -101,6 +101,20 @@ def test_filters_of_a_batch_do_not_touch_each_other():
     np.testing.assert_array_equal(after.state[:, 0], narrow.state)
 
 
+def test_each_filter_of_a_batch_keeps_its_own_share():
+    sensor, cloud_of_two = pf.RangeBearing(WORLD, 0.2, 0.1), cloud(1000)
+    bel = pf.Particles(np.stack([cloud_of_two.state] * 2, 1), np.stack([cloud_of_two.log_w] * 2))
+    after, stages = pf.tempered_update(
+        bel, measurement(), sensor, np.random.default_rng(1), keep=[0.0, 0.5]
+    )
+    plain = pf.update(bel, measurement(), sensor)[0]
+    assert stages[0] == 1 < stages[1]
+    np.testing.assert_array_equal(after.state[:, 0], bel.state[:, 0])
+    np.testing.assert_allclose(after.log_w[0], plain.log_w[0], atol=1e-12)
+    with pytest.raises(pf.ShapeError, match="keep"):
+        pf.tempered_update(bel, measurement(), sensor, np.random.default_rng(1), keep=[0.5] * 3)
+
+
 def test_a_symmetric_world_keeps_both_hypotheses():
     """Two ranges leave a mirror image: the cloud must not choose."""
     sensor = pf.Range(WORLD, 0.1)
