@@ -174,11 +174,12 @@ RESIDUAL = (
         rest_for_all_alike,
     ),
     Misconception(
-        "systematic",
-        "is systematic resampling, or draws the rest with a comb",
+        "no-repeat",
+        "never gives a particle two of the copies that are left: it is a comb, or draws without "
+        "replacement",
         (
-            "Can a particle get two of the copies that are left to chance? In yours it cannot.",
-            "Residual resampling draws what is missing independently.",
+            "Two copies are left to chance. Can one particle get both? In yours it cannot.",
+            "Residual resampling draws what is missing independently, with replacement.",
             "Draw the rest with rng.choice(M, left, p=rest / rest.sum()).",
         ),
         comb_for_the_rest,
