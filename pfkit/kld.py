@@ -70,7 +70,7 @@ def kld_bound(
 
     Notes
     -----
-    Source: Probabilistic Robotics, Table 8.4, line 15; D. Fox, IJRR 22 (2003).
+    Source: Probabilistic Robotics, Table 8.4; D. Fox, IJRR 22 (2003).
     """
     k = require_finite("k", k)
     if (k < 1).any() or (k != np.floor(k)).any():

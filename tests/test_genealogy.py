@@ -163,3 +163,11 @@ def test_a_count_that_never_varies_is_exact_or_infinitely_wrong():
 
     z = pf.offspring_z(always_first, w, rng(), 10)
     assert z[0] == np.inf and (z[1:] == -np.inf).all()
+
+
+def test_a_record_counts_its_steps():
+    tree = pf.Genealogy()
+    with pytest.raises(pf.ShapeError, match="nothing recorded"):
+        tree.ancestors  # noqa: B018
+    tree(0, None, pf.Info(0.0, 1.0, False, np.arange(3)))
+    assert repr(tree) == "Genealogy(1 steps)" and tree.ancestors.shape == (1, 3)

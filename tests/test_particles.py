@@ -140,3 +140,8 @@ def test_a_batch_of_one_prior_is_a_single_one():
         lambda M: pf.gaussian_prior(M, (0.0, 1.0, 2.0), (1, 1, 1), rng(1)),
     ):
         np.testing.assert_array_equal(draw((1, 30)).state[:, 0], draw(30).state)
+
+
+def test_a_set_without_particles_is_refused():
+    with pytest.raises(pf.ShapeError, match="empty"):
+        pf.Particles(np.zeros((3, 0)), np.zeros(0))

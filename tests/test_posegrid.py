@@ -51,3 +51,8 @@ def test_gaussian_grid_has_its_moments():
 def test_bad_input_is_named(call, error):
     with pytest.raises(error):
         call()
+
+
+def test_a_belief_of_another_shape_is_refused():
+    with pytest.raises(pf.ShapeError, match="n_theta"):
+        pf.PoseGrid(np.full((2, 2), 0.25), (0.0, 1.0, 0.0, 1.0))
