@@ -33,8 +33,9 @@ def roulette_wheel(w: ArrayLike, rng: np.random.Generator, n: int | None = None)
     .. math:: b_k = b_{k-1} + 2\, w_{\max} U_k , \qquad U_k \sim \mathcal U(0, 1)
 
     It looks like systematic resampling and needs n + 1 random numbers instead of one. The walk
-    forgets its start only slowly, and the start ignores the weights: for few particles
-    :math:`E[N_m]` is *not* :math:`n w_m`. Its copies also scatter more than a comb's.
+    forgets its start only slowly, and the start ignores the weights: for few particles, and for
+    many whose like weights lie side by side, :math:`E[N_m]` is *not* :math:`n w_m`. Its copies
+    also scatter more than a comb's.
 
     Parameters, returns and errors are those of `multinomial`, but its indices are *not* sorted:
     they come in the order of the walk.
