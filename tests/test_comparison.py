@@ -104,5 +104,5 @@ def test_a_comparison_says_who_won_and_how_surely():
     found = pf.paired([1.0, 2.0, 5.0, 2.0], [2.0, 4.0, 4.0, 4.0], rng())
     assert found.wins == 3
     low, high = found.difference.low, found.difference.high
-    assert repr(found.difference) == f"-1.25 [{low:.4g}, {high:.4g}]"
+    assert repr(found.difference) == f"-1 [{low:.4g}, {high:.4g}]"
     assert repr(found) == f"A - B = {found.difference!r}, p = {found.p:.2g}, A smaller on 3 of 4"
