@@ -221,9 +221,12 @@ def add_scripts(app: Sphinx, pagename: str, templatename: str, context: Any, doc
     if not page or app.builder.name != "html" or not (SITE / "page.js").exists():
         return
     path, v = context["pathto"], version()
-    live = int((SITE / "manifest.json").exists())
-    styles = ["explorable.css", *(["lab.css"] if "lab" in page else [])]
-    scripts = [*SCRIPTS, *(["lab.js"] if "lab" in page else [])]
+    live = (SITE / "manifest.json").exists()
+    lab = "lab" in page and live  # without Python, cells stay as the notebook shows them
+    if not (page["runs"] or lab):
+        return
+    styles = ["explorable.css", *(["lab.css"] if lab else [])]
+    scripts = [*SCRIPTS, *(["lab.js"] if lab else [])]
     links = [
         f'<link rel="stylesheet" href="{path("live/" + name, resource=True)}?v={v}">'
         for name in styles
@@ -231,10 +234,10 @@ def add_scripts(app: Sphinx, pagename: str, templatename: str, context: Any, doc
     context["metatags"] = context.get("metatags", "") + "\n".join(links)
     tags = [
         f'<script defer src="{path("live/" + name, resource=True)}?v={v}" '
-        f'data-version="{v}" data-live="{live}"></script>'
+        f'data-version="{v}" data-live="{live:d}"></script>'
         for name in scripts
     ]
-    if "lab" in page:
+    if lab:
         data = json.dumps(page["lab"]).replace("<", "\\u003c")
         tags.insert(0, f'<script type="application/json" id="pf-lab">{data}</script>')
     context["body"] = context.get("body", "") + "\n".join(tags)

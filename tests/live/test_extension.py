@@ -92,3 +92,22 @@ def test_without_the_runtime_a_page_keeps_still_and_missions(live_page, tmp_path
     assert 'src="live-runs/comb-comb-3.svg"' in page and "Look." in page
     assert (tmp_path / "out" / "live-runs" / "comb-comb-3.svg").exists()
     assert "page.js" not in page
+
+
+def test_a_lab_without_python_keeps_its_cells(live_page, tmp_path, monkeypatch):
+    """No network when the book was built: scripts and recordings are there, Python is not."""
+
+    class Builder:
+        name = "html"
+
+    app = type("App", (), {"builder": Builder})
+    app.env = type("Env", (), {"live_pages": {"lab": {"runs": {}, "lab": {"cells": []}}}})
+    monkeypatch.setattr(live_page, "SITE", tmp_path)
+    (tmp_path / "page.js").touch()
+    for there in (False, True):
+        context = {"pathto": lambda name, resource: name}
+        if there:
+            (tmp_path / "manifest.json").touch()
+        live_page.add_scripts(app, "lab", "page.html", context, None)
+        assert ("lab.js" in context.get("body", "")) is there
+        assert ("explorable.css" in context.get("metatags", "")) is there
