@@ -13,5 +13,5 @@ def test_every_core_module_is_documented():
     assert len(shown) == len(set(shown))
     modules = {p.stem for p in (ROOT / "pfkit").glob("*.py") if not p.stem.startswith("__")}
     packages = {p.parent.name for p in (ROOT / "pfkit").glob("*/__init__.py")}
-    edge = {"plotting", "widgets", "explore", "labs"}
+    edge = {"plotting", "palette", "widgets", "explore", "labs"}
     assert (modules | packages) - edge == set(shown)
