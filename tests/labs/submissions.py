@@ -165,7 +165,7 @@ def cases(precious, tag):
         "Right.ipynb": (answered(), "ok", ""),
         "windows.ipynb": (windows, "ok", ""),
         "by hand.json": (by_hand(), "ok", "another version"),
-        "two\nlines.ipynb": (answered(), "ok", ""),
+        "Ольга 😀.ipynb": (answered(), "ok", ""),
         "10 MB of output.ipynb": (answered(much_output), "ok", ""),
         "thread.ipynb": (before(
             "import threading, time\nthreading.Thread(target=time.sleep, args=(60,)).start()"),
