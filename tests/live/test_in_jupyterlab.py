@@ -63,6 +63,8 @@ def test_a_control_moved_in_jupyterlab_is_followed(chromium, jupyter):
 
     context = chromium.new_context(viewport={"width": 1200, "height": 900})
     tab = context.new_page()
+    ask = tab.locator(".jp-Dialog")  # a slow machine is asked which kernel; the default is right
+    tab.add_locator_handler(ask, lambda dialog: dialog.locator(".jp-mod-accept").click())
     tab.goto(jupyter + "/lab/tree/one.ipynb?reset", wait_until="load")
     tab.locator(".jp-Notebook .jp-CodeCell").first.wait_for(timeout=90_000)
     idle = ".jp-Notebook-ExecutionIndicator[data-status='idle']"

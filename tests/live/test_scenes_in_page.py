@@ -166,6 +166,40 @@ def test_keyboard_alone_is_enough(page):
     assert not outline.startswith("none")
 
 
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_words_stay_inside_a_narrow_picture(page, name, panel):
+    cut = page.tab.evaluate(
+        """async ([name, panel]) => {
+          const { size } = await (async () => JSON.parse(
+            await PF.scenes.ask({ do: "open", key: "t", name, panel, seed: 3 })))();
+          const { drawing } = await PF.scenes.ask(
+            { do: "run", key: "t", operations: '[["step", 12]]' });
+          const renderer = new PF.Renderer(document.createElement("canvas"), size), cut = [];
+          renderer.context.fillText = function (text, x) {
+            const { actualBoundingBoxLeft: left, actualBoundingBoxRight: right }
+              = this.measureText(text);
+            if (x - left < 0 || x + right > renderer.width) cut.push(text);
+          };
+          renderer.resize(356);
+          renderer.draw(drawing);
+          return cut;
+        }""",
+        [name, panel],
+    )
+    assert cut == []
+
+
+def test_the_picture_stays_in_sight_beside_the_control_that_moves_it(page):
+    tab = page.tab
+    last = tab.locator(".pf-explorable").first.locator(".pf-controls input").last
+    last.focus()
+    tab.wait_for_timeout(200)
+    stage = tab.locator(".pf-stage").first.bounding_box()
+    control = last.bounding_box()
+    assert 0 <= stage["y"] and stage["y"] + stage["height"] <= control["y"]
+    assert control["y"] + control["height"] <= 900
+
+
 def test_pointer_drives_the_robot(page):
     tab = page.tab
     tab.evaluate(f"{page.x}.restart(3)")
