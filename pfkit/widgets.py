@@ -63,7 +63,10 @@ export default {
       e.setAttribute("data-lm-suppress-shortcuts", "true");
     }
     explorable.touch(0);
-    return () => model.off("msg:custom", answered);
+    return () => {
+      model.off("msg:custom", answered);
+      explorable.destroy();
+    };
   },
 };
 """

@@ -223,7 +223,7 @@
 
     observe() {
       const stage = this.canvas.parentElement;
-      const fit = () => {
+      this.fit = () => {
         const width = Math.floor(stage.clientWidth);
         if (width > 0 && width !== this.renderer.width) this.renderer.resize(width);
         /* The picture stays in sight above its controls, if that leaves room for them. */
@@ -231,8 +231,8 @@
         this.root.classList.toggle("pf-follow", height > 0 && height < 0.55 * innerHeight);
         this.root.style.setProperty("--pf-stage", `${height}px`);
       };
-      new ResizeObserver(fit).observe(stage);
-      addEventListener("resize", fit);
+      new ResizeObserver(this.fit).observe(stage);
+      addEventListener("resize", this.fit);
       new IntersectionObserver((entries) => {
         this.visible = entries[entries.length - 1].isIntersecting;
       }).observe(this.canvas);
@@ -300,7 +300,14 @@
       });
     }
 
+    /* For hosts that throw pictures away, as a notebook does when a cell runs again. */
+    destroy() {
+      this.gone = true;
+      removeEventListener("resize", this.fit);
+    }
+
     loop(now) {
+      if (this.gone) return;
       requestAnimationFrame(this.loop);
       const dt = Math.min(0.1, (now - (this.clock || now)) / 1000);
       this.clock = now;
