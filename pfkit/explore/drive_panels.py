@@ -149,7 +149,7 @@ CONTROLS = (
     ),
     Control("next", "Next landmark", "button", help="Select another one.", keys={"n": True}),
     Control("add", "Add a landmark", "button", help="Somewhere.", keys={"a": True}),
-    Control("remove", "Remove it", "button", help="The selected one.", keys={"d": True}),
+    Control("remove", "Remove it", "button", help="The selected one; one stays.", keys={"d": True}),
     Control("fifth", "Put up a fifth landmark", "button", help="At (13, 7.5)."),
     Control(
         "throttle",
