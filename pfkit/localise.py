@@ -4,8 +4,8 @@ Everything is put together here: calibrate on the first seconds (if their truth 
 compose the odometry between measurements, start from a known pose or from anywhere on the map,
 run the filter, carry its answers on to every odometry stamp, compare with the truth.
 
-The settings were chosen on the first third of MRCLAM data set 4, robot 3, and of Plaza 2, and
-then left alone. Three things about them are worth knowing.
+The settings were chosen on the first third of MRCLAM data set 4, robot 3, and of Plaza 2.
+Three things about them are worth knowing.
 
 * sigma_r is three times the spread of the range errors. Consecutive errors to one landmark
   are nearly equal; a model that takes them as independent counts the same news many times, and
@@ -14,7 +14,8 @@ then left alone. Three things about them are worth knowing.
   not overrule everything else.
 * Commands are not measurements. What is not calibrated must be paid for as noise (`Drift`).
 
-A global start needs two things more. The first measurement may be false, and a cloud that
+A global start needs two things more; they were chosen on variants of the log with other starts,
+fewer landmarks and false measurements. The first measurement may be false, and a cloud that
 gathers around it is lost; so one measurement in a thousand may come from anywhere
 (`OutlierMixture`), which keeps a few particles elsewhere. A larger share would doubt true
 measurements, too, and be slow where landmarks are few. And a wide cloud is weighed in stages
@@ -58,6 +59,7 @@ from pfkit.tempering import tempered_update
 
 Array = NDArray[np.float64]
 Watch = Callable[[int, int], object]
+DOUBT = 0.001  # of the measurements of a global start: may come from anywhere
 
 
 @dataclass(frozen=True)
@@ -194,12 +196,12 @@ def localise(
     return Track(estimate, sd, first, seconds)
 
 
-def _doubtful(sensor: Sensor, world: LandmarkMap, share: float = 0.001) -> Sensor:
+def _doubtful(sensor: Sensor, world: LandmarkMap) -> Sensor:
     """The sensor, but a share of its measurements comes from anywhere on the map."""
     x0, x1, y0, y1 = world.bounds
     farthest = np.hypot(x1 - x0, y1 - y0)
     circle = 2 * np.pi if sensor.components == 3 else 1.0  # range alone has no bearing
-    return OutlierMixture(sensor, share, 1 / (circle * farthest))
+    return OutlierMixture(sensor, DOUBT, 1 / (circle * farthest))
 
 
 def _filter(
