@@ -278,6 +278,7 @@ def test_an_export_is_graded_like_the_notebook(lab, tmp_path):
     subprocess.run([*command, "--jobs", "2"], check=True, capture_output=True)
     with grades.open(encoding="utf-8", newline="") as file:
         rows = {row["student"]: row for row in csv.DictReader(file)}
+    assert {row["status"] for row in rows.values()} == {"ok"}, rows
     assert rows["page"]["score"] == rows["desk"]["score"]
     assert float(rows["page"]["score"]) > 0 and rows["page"]["p5b"] == rows["desk"]["p5b"]
 
