@@ -81,7 +81,8 @@ def _comb(w: Array, total: Array, n: int, u: Array) -> Indices:
     """
     bits = 62 - n.bit_length()
     ticks = 1 << bits
-    edges = (w * (n * ticks / total)).astype(np.int64)
+    edges = np.empty(w.shape, dtype=np.int64)  # written in place: fresh memory costs more than sums
+    np.multiply(w, n * ticks / total, out=edges, casting="unsafe")
     np.cumsum(edges, axis=-1, out=edges)
     tooth = (u * ticks).astype(np.int64)
     last = tooth[..., -1:]  # rounding must not leave it beyond the last edge
