@@ -16,6 +16,8 @@ Inside the package nothing is checked twice: functions that begin with an unders
 from __future__ import annotations
 
 import math
+import os
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -83,6 +85,13 @@ def require_non_negative(name: str, value: Any) -> np.ndarray:
     if not (array >= 0).all():
         raise ParameterError(f"{name} must be >= 0, got {array.min()}; drop the sign")
     return array
+
+
+def as_path(name: str, value: Any) -> Path:
+    """Return `value` as a path; raise `ParameterError` unless it is text or a path."""
+    if not isinstance(value, str | os.PathLike):
+        raise ParameterError(f"{name} must be a path, got {value!r:.60}; give its name as text")
+    return Path(value)
 
 
 def require_positive_number(name: str, value: Any) -> float:

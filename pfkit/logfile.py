@@ -26,7 +26,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.datasets.text import read_table
-from pfkit.errors import DataError, ShapeError, require_count, require_instance
+from pfkit.errors import DataError, ShapeError, as_path, require_count, require_instance
 from pfkit.log import Log
 from pfkit.maps import LandmarkMap
 from pfkit.occupancy import OccupancyGrid
@@ -52,7 +52,7 @@ def save_log(log: Log, folder: str | Path, digits: int = 17) -> None:
     if log.u.ndim != 2:
         raise ShapeError(f"only single drives can be saved, got u {log.u.shape}; pick one run")
     require_count("digits", digits)
-    folder = Path(folder)
+    folder = as_path("folder", folder)
     folder.mkdir(parents=True, exist_ok=True)
     rows = [log.t[None], log.u] + ([] if log.truth is None else [log.truth])
     names = ["time", *_numbered("u", log.u), *_numbered("x", log.truth)]
@@ -85,7 +85,7 @@ def read_log(folder: str | Path) -> Log:
     DataError
         With file, line and reason, if a table is missing or damaged.
     """
-    folder = Path(folder)
+    folder = as_path("folder", folder)
     steps, source = _read(folder / "steps.txt")
     u, truth = (np.array([steps[n] for n in steps if n.startswith(c)]) for c in "ux")
     T = len(steps["time"])

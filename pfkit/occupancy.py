@@ -28,6 +28,7 @@ from pfkit.errors import (
     ParameterError,
     Shape,
     ShapeError,
+    as_path,
     require_finite,
     require_fraction,
     require_positive_number,
@@ -157,7 +158,7 @@ class OccupancyGrid:
         DataError
             If a file is missing, cut off or malformed; names file and reason.
         """
-        path = Path(path)
+        path = as_path("path", path)
         settings = read_settings(path)
         grey, white = read_pgm(path.parent / str(settings.pop("image")))
         shade = grey[::-1] / white  # the picture's first row is the top of the map
@@ -169,7 +170,7 @@ class OccupancyGrid:
 
     def save(self, path: str | Path, text: bool = False) -> None:
         """Write the YAML file, and beside it the picture (P5; P2 if text), 256 shades of grey."""
-        path = Path(path)
+        path = as_path("path", path)
         picture = path.with_suffix(".pgm")
         x, y, yaw = self.origin
         write_pgm(picture, np.round(255 * (1.0 - self.p[::-1])).astype(np.uint8), text)

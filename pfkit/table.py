@@ -27,7 +27,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.comparison import bootstrap_interval
-from pfkit.errors import DataError, ParameterError, ShapeError, require_instance
+from pfkit.errors import DataError, ParameterError, ShapeError, as_path, require_instance
 
 Table = NDArray[np.void]
 
@@ -113,7 +113,7 @@ def summarise(
 def to_csv(table: Table, path: str | os.PathLike[str]) -> None:
     """Write a table as CSV with a header; numbers keep all their digits."""
     names = _names(table)
-    with open(path, "w", newline="", encoding="utf-8") as file:
+    with open(as_path("path", path), "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
         writer.writerow(names)
         writer.writerows(table.tolist())
@@ -129,7 +129,7 @@ def from_csv(path: str | os.PathLike[str]) -> Table:
         header.
     """
     try:
-        with open(path, newline="", encoding="utf-8") as file:
+        with open(as_path("path", path), newline="", encoding="utf-8") as file:
             rows = list(csv.reader(file))
     except OSError as problem:
         raise DataError(f"{path}: cannot be read ({problem.strerror}); check the path") from None

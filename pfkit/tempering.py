@@ -34,7 +34,7 @@ from pfkit.errors import (
     require_finite,
     require_fraction,
     require_method,
-    require_non_negative,
+    require_non_negative_number,
     require_rng,
 )
 from pfkit.estimators import covariance
@@ -89,7 +89,7 @@ def tempered_update(
     require_particles(bel)
     require_method("sensor", sensor, "log_likelihood")
     keep = _require_shares(keep, bel.log_w.shape[:-1])
-    require_non_negative("kernel", kernel)
+    require_non_negative_number("kernel", kernel)
     stages = np.zeros(bel.log_w.shape[:-1], dtype=np.int64)
     z = None if z is None else as_numbers("z", z, DataError)
     if z is None or (z.ndim > 1 and z.shape[1] == 0):

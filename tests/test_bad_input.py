@@ -50,7 +50,6 @@ BAD: dict[str, list[tuple[Any, str]]] = {
     "one or two": [(0.0, "0"), (NAN, "nan"), ("wide", "wide"), ([1.0, 2.0, 3.0], "(3,)")],
     "positive or inf": [(0.0, "0"), (-1.0, "-1"), (NAN, "nan"), ("wide", "wide")],
     "non-negative": [(-1.0, "-1"), (NAN, "nan"), ("wide", "wide"), ([1.0, 2.0], "2")],
-    "at least 0": [(-1.0, "-1"), (NAN, "nan"), ("wide", "wide")],
     "fraction": [(-0.1, "-0.1"), (1.1, "1.1"), (NAN, "nan"), ("half", "half")],
     "level": [(0.0, "0"), (1.0, "1"), (NAN, "nan"), ("most", "most")],
     "count": [(0, "0"), (-1, "-1"), (2.5, "2.5"), (True, "True"), ("many", "many")],
@@ -138,7 +137,7 @@ BAD: dict[str, list[tuple[Any, str]]] = {
     "scores": [([1.0, NAN, 2.0], "nan"), ([], "(0,)"), ("a", "a")],
     "probabilities": [([0.5, -0.5, 1.0], "-0.5"), ([NAN, 1.0], "nan"), ([], "(0,)"), ("a", "a")],
     "key": [("lottery", "lottery"), (None, "None")],
-    "folder": [("/no/such/folder", "/no/such/folder")],
+    "folder": [("/no/such/folder", "/no/such/folder"), (3, "3")],
     "times": [([0.0, NAN, 1.0, 2.0], "nan"), ("noon", "noon")],
 }
 
@@ -539,7 +538,7 @@ TABLE |= {
     "regularise": (pf.regularise, dict(bel=bel, rng=r)),
     "tempered_update": (
         pf.tempered_update,
-        dict(bel=bel, z=z, sensor=sensor, rng=r, keep=half, kernel=(0.3, "at least 0")),
+        dict(bel=bel, z=z, sensor=sensor, rng=r, keep=half, kernel=(0.3, "non-negative")),
     ),
     # L4
     "pose_error": (pf.pose_error, estimate),

@@ -143,3 +143,8 @@ def test_the_bytes_written_are_the_bytes_read(tmp_path):
     for text in (False, True):
         write_pgm(tmp_path / "b.pgm", grey, text)
         np.testing.assert_array_equal(read_pgm(tmp_path / "b.pgm")[0], grey)
+
+
+def test_what_is_no_path_is_named():
+    with pytest.raises(pf.ParameterError, match="path must be a path, got 3"):
+        pf.OccupancyGrid.load(3)

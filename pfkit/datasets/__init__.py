@@ -15,7 +15,7 @@ from pathlib import Path
 
 from pfkit.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
 from pfkit.datasets.plaza import is_plaza, read_plaza
-from pfkit.errors import DataError
+from pfkit.errors import DataError, as_path
 from pfkit.log import Log
 
 __all__ = ["find_folder", "load_log", "load_mrclam", "load_plaza"]
@@ -41,7 +41,7 @@ def find_folder(name: str | Path | None, is_layout=None) -> Path:
         If there is none; says where to get a log and how to lay it out.
     """
     fits = is_layout or (lambda folder: is_mrclam(folder) or is_plaza(folder))
-    if name is not None and Path(name).exists():
+    if name is not None and as_path("folder", name).exists():
         return Path(name)
     data = Path(__file__).parents[2] / "data"
     roots = [Path(os.environ["PFKIT_DATA"])] if os.environ.get("PFKIT_DATA") else []
