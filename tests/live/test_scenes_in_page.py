@@ -240,8 +240,8 @@ def test_worker_cannot_fetch_once_it_runs(page):
 
 
 def test_a_link_repeats_the_exact_run(page, open_page):
-    tab, x = page.tab, page.x
-    tab.evaluate(f"{x}.restart(5)")
+    tab, x = page.tab, page.explorable()
+    tab.evaluate(f"{x}.restart(5), {x}.setPlaying(true)")
     tab.wait_for_function(f"{x}.ticks > 20 && {x}.seed === 5")
     tab.evaluate(f"{x}.change('sigma_r', 0.9)")
     tab.wait_for_function(f"{x}.history.length >= 1 && {x}.ticks > 60")

@@ -26,6 +26,14 @@ def test_a_failure_stops_the_rest_unless_told_to_keep_going(capfd):
     assert checks.run_all([three[0], three[2]], keep_going=False)
 
 
+def test_what_failed_is_tried_once_more_and_only_where_the_stage_says_so(capfd):
+    assert checks.run(Stage("pages", "", [BAD], again=GOOD))[0]
+    assert "what failed runs once more" in capfd.readouterr().out
+    assert not checks.run(Stage("pages", "", [BAD], again=BAD))[0]
+    assert not checks.run(Stage("unit", "", [BAD]))[0]
+    assert [stage.name for stage in checks.stages() if stage.again] == ["pages"]
+
+
 def test_what_one_stage_leaves_out_another_runs():
     stages = {stage.name: stage for stage in checks.stages()}
     (unit,) = stages.pop("unit").commands
