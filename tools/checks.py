@@ -12,6 +12,7 @@ It ends with a summary: what passed, what failed, what was skipped and why, and 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 import subprocess
 import sys
@@ -23,7 +24,7 @@ from environment import ROOT, say
 PYTHON = sys.executable
 PYTEST = [PYTHON, "-m", "pytest", "-p", "no:cacheprovider"]
 TWO_CORES = ["-n", "2", "--dist", "loadfile"]
-ONE_BY_ONE = ["-n", "2", "--dist", "loadgroup"]  # pages by themselves; files of tests/live whole
+MEMORY = ".cache/pytest"  # what failed, so that it can run once more
 CODE = [name for name in ("pfkit", "tests", "tools", "book/_ext") if (ROOT / name).exists()]
 NBVAL = [
     *["--nbval", "--nbval-current-env", "--nbval-cell-timeout", "60"],
@@ -34,8 +35,8 @@ NBVAL = [
 class Stage(NamedTuple):
     """One check: its name, what it shows, the commands that must succeed.
 
-    `again`, if given, runs what failed once more; that is for browsers, which a busy machine can
-    keep waiting too long. What is broken fails twice.
+    `again`, if given, runs the files with a failure once more, one after the other; that is for
+    browsers, which a busy machine can keep waiting too long. What is broken fails twice.
     """
 
     name: str
@@ -60,7 +61,7 @@ def stages(lax: bool = False) -> list[Stage]:
     separate = ["tests/test_layers.py", "tests/test_stamps.py", "tests/book", "tests/live"]
     apart = [f"--ignore={name}" for name in separate]
     memory = [word for word in PYTEST if word not in ("-p", "no:cacheprovider")]
-    memory += ["-o", "cache_dir=.cache/pytest", "-rs"]
+    memory += ["-o", f"cache_dir={MEMORY}", "-rs"]
     browser = [name for name in ("tests/book", "tests/live") if list((ROOT / name).glob("test_*"))]
     notebooks = ["book/index.ipynb", *map(str, sorted((ROOT / "notebooks").rglob("*_*.ipynb")))]
     return [
@@ -80,10 +81,18 @@ def stages(lax: bool = False) -> list[Stage]:
         Stage(
             "pages",
             "every page in a browser, over http and from disk",
-            [[*memory, *ONE_BY_ONE, *browser]],
-            again=[*memory, "--lf", "--lfnf=none", *browser],
+            [[*memory, *TWO_CORES, *browser]],
+            again=memory,
         ),
     ]
+
+
+def files_that_failed() -> list[str]:
+    """Name the test files in which pytest remembers a failure: tests of a file share a page."""
+    memory = ROOT / MEMORY / "v" / "cache" / "lastfailed"
+    names = json.loads(memory.read_text(encoding="utf-8")) if memory.exists() else {}
+    files = {name.partition("::")[0] for name in names}
+    return sorted(name for name in files if (ROOT / name).exists())
 
 
 def run(stage: Stage) -> tuple[bool, float]:
@@ -98,9 +107,9 @@ def run(stage: Stage) -> tuple[bool, float]:
         return subprocess.call(command, cwd=ROOT, env=environment) == 0
 
     passed = all(map(succeeds, stage.commands))
-    if not passed and stage.again:
-        say(f"{stage.name}: what failed runs once more, by itself")
-        passed = succeeds(stage.again)
+    if not passed and stage.again and (files := files_that_failed()):
+        say(f"{stage.name}: what failed runs once more, by itself: {', '.join(files)}")
+        passed = succeeds([*stage.again, *files])
     return passed, time.monotonic() - start
 
 

@@ -15,16 +15,8 @@ from pathlib import Path
 import browser
 import pytest
 
-HERE = Path(__file__).resolve().parent
-ROOT = HERE.parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 SITE = ROOT / ".cache" / "live" / "site"
-
-
-def pytest_collection_modifyitems(items):
-    """Tests of one file share their page: with two workers they stay together."""
-    for item in items:
-        if HERE in item.path.parents:
-            item.add_marker(pytest.mark.xdist_group(item.path.stem))
 
 
 CONF = """

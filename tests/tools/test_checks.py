@@ -26,12 +26,25 @@ def test_a_failure_stops_the_rest_unless_told_to_keep_going(capfd):
     assert checks.run_all([three[0], three[2]], keep_going=False)
 
 
-def test_what_failed_is_tried_once_more_and_only_where_the_stage_says_so(capfd):
+def test_what_failed_is_tried_once_more_and_only_where_the_stage_says_so(monkeypatch, capfd):
+    monkeypatch.setattr(checks, "files_that_failed", lambda: ["tests/book/test_pages.py"])
     assert checks.run(Stage("pages", "", [BAD], again=GOOD))[0]
-    assert "what failed runs once more" in capfd.readouterr().out
+    assert "runs once more, by itself: tests/book/test_pages.py" in capfd.readouterr().out
     assert not checks.run(Stage("pages", "", [BAD], again=BAD))[0]
     assert not checks.run(Stage("unit", "", [BAD]))[0]
+    monkeypatch.setattr(checks, "files_that_failed", lambda: [])  # it did not even start
+    assert not checks.run(Stage("pages", "", [BAD], again=GOOD))[0]
     assert [stage.name for stage in checks.stages() if stage.again] == ["pages"]
+
+
+def test_failures_are_remembered_by_file(monkeypatch, tmp_path):
+    monkeypatch.setattr(checks, "ROOT", tmp_path)
+    assert checks.files_that_failed() == []
+    folder = tmp_path / checks.MEMORY / "v" / "cache"
+    folder.mkdir(parents=True)
+    (folder / "lastfailed").write_text('{"t.py::x[1::2]": true, "t.py::y": true, "gone.py": true}')
+    (tmp_path / "t.py").touch()
+    assert checks.files_that_failed() == ["t.py"]
 
 
 def test_what_one_stage_leaves_out_another_runs():
