@@ -370,7 +370,8 @@
   async function keepPredictions() {
     const text = await python.ask({ do: "progress", lab: lab.lab });
     if (!text) return;
-    predictions = JSON.parse(text).predictions || {};
+    // A lock stays: a Python that was stopped and started anew may not know it yet.
+    predictions = { ...predictions, ...JSON.parse(text).predictions };
     storePredictions();
     showLocks();
   }
