@@ -165,7 +165,7 @@ def drift_time(N: int, share: float = 0.5) -> float:
     Notes
     -----
     Solves N - 1 linear equations: O(N^3), fine up to some thousand. Source: W. J. Ewens,
-    Mathematical Population Genetics, chapter 3 (the Wright-Fisher model).
+    Mathematical Population Genetics, ch. 3 (the Wright-Fisher model).
     """
     N, share = require_count("N", N, 2), require_fraction("share", share)
     i = round(share * N)

@@ -7,11 +7,11 @@ A result is written in the text with a comment behind it that names the line of 
 Readers, in the book and in Jupyter, see `0.06`. The comment names what stands before the number
 in a printed line, from the start of that line (`RMSE of filter` in `RMSE of filter = 0.0581 m`);
 case and punctuation do not matter. Further forms: `label [2]` is the second number behind the
-label, `label * 100` a percentage, `06_particle_filter#label` a line of another notebook. The number
-must be the printed one, rounded to the decimals the text shows.
+label, `label * 100` a percentage, `particle_filter#label` a line of the notebook on that topic. The
+number must be the printed one, rounded to the decimals the text shows.
 
 Numbers without a comment must occur in the code or output of the notebook, except whole numbers up
-to 20, years, and numbers that name something (Chapter 7, Table 4.4). A fact that no cell can give,
+to 20, years, and numbers that name something (Figure 7, Table 4.4). A fact that no cell can give,
 say from a paper, is marked `1,354<!--given-->`.
 
     python tools/prose_numbers.py --check [FILE ...]    list what does not agree
@@ -102,16 +102,21 @@ def numbers_behind(label: str, line: str) -> list[float]:
     return [value(match) for match in re.findall(rf"(?<![\w.])(?:{NUMBER})", rest)]
 
 
+def notebook_on(topic: str, folder: Path) -> Path:
+    """Return the chapter on a topic, or another notebook by its name; LookupError if none."""
+    found = [*folder.glob(f"[0-9][0-9]_{topic}.ipynb"), *folder.glob(f"{topic}.ipynb")]
+    if len(found) != 1:
+        raise LookupError(f"there is no notebook on {topic}")
+    return found[0]
+
+
 def look_up(rule: str, notebook: dict, folder: Path) -> float:
     """Return the printed value that a comment names; raise LookupError with the reason if none."""
     match = RULE.match(rule)
     if match is None:
         raise LookupError("the comment does not read <!--= label -->")
     if match["page"]:
-        path = folder / f"{match['page']}.ipynb"
-        if not path.exists():
-            raise LookupError(f"there is no notebook {match['page']}.ipynb")
-        notebook = stamps.read(path)
+        notebook = stamps.read(notebook_on(match["page"], folder))
     rows = [row for line in lines(notebook) if (row := numbers_behind(match["label"], line))]
     if not rows:
         raise LookupError(f"no cell prints a line that starts with {match['label'].strip()!r}")

@@ -6,6 +6,7 @@
     lint        style and format of the code (ruff); lint --fix mends what it can
     notebooks   execute the notebooks whose code, package or data changed:  notebooks [FILE ...]
     numbers     compare the numbers in the prose with the cells:  numbers [--fill] [FILE ...]
+    chapters    compare the numbers of chapters with their files:  chapters [--fill]
     clean       remove what was built; clean --all also removes the environment and the caches
 
 The first call makes the environment .venv; nothing outside this folder is touched.
@@ -31,6 +32,7 @@ COMMANDS = {
     "lint": ("all", "checks", ["lint"]),
     "notebooks": ("all", "notebooks", []),
     "numbers": ("all", "prose_numbers", []),
+    "chapters": ("all", "chapter_numbers", []),
 }
 
 

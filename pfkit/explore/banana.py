@@ -1,10 +1,10 @@
 """The banana: which errors made this cloud?
 
-Chapter 3 as a machine. A robot carries out the same short route many times, and each time errs a
-little. Its ends form a cloud whose shape tells which part of the motion is noisy. A hidden robot
-leaves the grey cloud; the reader turns the four noises of the velocity model until the coloured
-cloud lies on it. Both clouds use the same random numbers at every setting, so that a cloud bends
-smoothly while a slider moves.
+The chapter on motion as a machine. A robot carries out the same short route many times, and each
+time errs a little. Its ends form a cloud whose shape tells which part of the motion is noisy. A
+hidden robot leaves the grey cloud; the reader turns the four noises of the velocity model until the
+coloured cloud lies on it. Both clouds use the same random numbers at every setting, so that a cloud
+bends smoothly while a slider moves.
 """
 
 from __future__ import annotations

@@ -1,9 +1,9 @@
 """The comb: one bar of cumulative weights, five ways to pick from it, and what luck each adds.
 
-Chapter 7 as a machine. Five particles share a bar of length one in proportion to their weights.
-Every scheme drops n teeth on the same bar; a particle gets a copy for each tooth that hits it.
-All schemes but one are right on average. They differ in how far a single draw strays from n w,
-and the bars on the right measure that: the summed variance of the five offspring counts.
+The chapter on resampling as a machine. Five particles share a bar of length one in proportion to
+their weights. Every scheme drops n teeth on the same bar; a particle gets a copy for each tooth
+that hits it. All schemes but one are right on average. They differ in how far a single draw strays
+from n w, and the bars on the right measure that: the summed variance of the five offspring counts.
 
 The strip below follows 24 particles with equal weights through repeated resampling: which of the
 first generation still have descendants?

@@ -1,8 +1,9 @@
 """The corridor: the Bayes filter on 24 cells, with a door detector that can be wrong.
 
-Chapter 1 as a machine. The corridor is a ring. Each *move* takes the robot one cell on, most of the
-time; each *look* reports door or wall, most of the time rightly. Three rows of bars show the two
-lines of the filter: the prediction, the likelihood of what was seen, and their normalised product.
+The chapter on the Bayes filter as a machine. The corridor is a ring. Each *move* takes the robot
+one cell on, most of the time; each *look* reports door or wall, most of the time rightly. Three
+rows of bars show the two lines of the filter: the prediction, the likelihood of what was seen, and
+their normalised product.
 """
 
 from __future__ import annotations

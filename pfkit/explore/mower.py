@@ -1,8 +1,8 @@
 """The mower: a real robot, four radio beacons, and a filter whose settings you choose.
 
-Chapter 14 as a machine. The log is Plaza 2: a mower on grass that hears one distance at a time.
-Each tick of the scene is one recorded range. The reader may hide most ranges, forget that the
-radios read long, trust them too much, or start without knowing where.
+The chapter on a real robot as a machine. The log is Plaza 2: a mower on grass that hears one
+distance at a time. Each tick of the scene is one recorded range. The reader may hide most ranges,
+forget that the radios read long, trust them too much, or start without knowing where.
 """
 
 from __future__ import annotations

@@ -1,9 +1,10 @@
 """Target and proposal: importance sampling under the reader's hands.
 
-Chapter 5 as a machine. We want expectations under the *target* but can only draw from the
-*proposal*. Each tick draws a fresh sample, weighs it by target over proposal, and estimates the
-mean of the target. The lower strip shows the weights as stems, the right one the estimates of many
-ticks: where the two densities disagree, a few particles carry everything and the estimates scatter.
+The chapter on importance weights as a machine. We want expectations under the *target* but can only
+draw from the *proposal*. Each tick draws a fresh sample, weighs it by target over proposal, and
+estimates the mean of the target. The lower strip shows the weights as stems, the right one the
+estimates of many ticks: where the two densities disagree, a few particles carry everything and the
+estimates scatter.
 """
 
 from __future__ import annotations

@@ -7,7 +7,7 @@ who writes questions. A question is a few declarations; nothing in it knows abou
 
     from pfkit.labs import Choice, Code, Lab, Misconception, Numeric, Property, Question
 
-    LAB = Lab("ch07", "Chapter 7: resampling variance", [Question("1", "Survival", (item, ...))])
+    LAB = Lab("ch07", "Resampling variance", [Question("1", "Survival", (item, ...))])
     check, use, predict, answer, summary, save, load = LAB.verbs()
 
 **Every item** has ``id`` (the metadata ``answer: "<id>"`` of its answer cell, which holds a stub

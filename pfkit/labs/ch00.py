@@ -1,4 +1,4 @@
-"""Before chapter 1: five questions, to see whether the course starts where you stand."""
+"""Before the course: five questions, to see whether the course starts where you stand."""
 
 import math
 
@@ -162,7 +162,7 @@ heading = Choice(
 
 LAB = Lab(
     "ch00",
-    "Before chapter 1: prerequisites",
+    "Prerequisites",
     [
         Question("arrays", "Arrays", (column,)),
         Question("chance", "Probability", (door, spread)),

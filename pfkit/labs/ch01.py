@@ -1,4 +1,4 @@
-"""Chapter 1: the Bayes filter in a corridor. Two lines, by hand, in code and under test."""
+"""The Bayes filter in a corridor. Two lines, by hand, in code and under test."""
 
 import numpy as np
 
@@ -474,7 +474,7 @@ why = Text(
 
 LAB = Lab(
     "ch01",
-    "Chapter 1: the Bayes filter in a corridor",
+    "The Bayes filter in a corridor",
     [
         Question("predict", "Predictions", (twice, zero)),
         Question("hand", "By hand", (moved, looked)),

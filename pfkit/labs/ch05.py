@@ -1,4 +1,4 @@
-"""Chapter 5: importance sampling and weights. What is a draw from the wrong density worth?"""
+"""Importance sampling and weights. What is a draw from the wrong density worth?"""
 
 import numpy as np
 
@@ -450,7 +450,7 @@ why = Text(
 
 LAB = Lab(
     "ch05",
-    "Chapter 5: importance sampling and weights",
+    "Importance sampling and weights",
     [
         Question("predict", "Predictions", (narrow, dim)),
         Question("hand", "By hand", (hand, ess)),

@@ -1,4 +1,4 @@
-"""Chapter 6: the particle filter, assembled. Questions on one turn of the filter."""
+"""The particle filter, assembled. Questions on one turn of the filter."""
 
 import numpy as np
 
@@ -552,7 +552,7 @@ blind = Text(
 
 LAB = Lab(
     "ch06",
-    "Chapter 6: the particle filter, assembled",
+    "The particle filter, assembled",
     [
         Question("predict", "Predictions", (no_copy, frozen)),
         Question("hand", "By hand", (hand, ess)),

@@ -1,4 +1,4 @@
-"""Chapter 7: resampling variance. What does the copying cost?"""
+"""Resampling variance. What does the copying cost?"""
 
 import numpy as np
 
@@ -475,7 +475,7 @@ why = Text(
 
 LAB = Lab(
     "ch07",
-    "Chapter 7: resampling variance",
+    "Resampling variance",
     [
         Question("predict", "Predictions", (clock, best)),
         Question("hand", "By hand", (hand, variance, survive)),

@@ -1,4 +1,4 @@
-"""Chapter 10: outliers. Mixtures, gates and their trap door."""
+"""Outliers. Mixtures, gates and their trap door."""
 
 import numpy as np
 
@@ -406,7 +406,7 @@ why = Text(
 
 LAB = Lab(
     "ch10",
-    "Chapter 10: outliers",
+    "Outliers",
     [
         Question("predict", "Predictions", (lock, ushape)),
         Question("hand", "By hand", (byhand, peak, unit)),

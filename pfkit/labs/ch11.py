@@ -1,4 +1,4 @@
-"""Chapter 11: global localisation and symmetry. Questions on copies that look alike."""
+"""Global localisation and symmetry. Questions on copies that look alike."""
 
 import numpy as np
 
@@ -670,7 +670,7 @@ report = Text(
 
 LAB = Lab(
     "ch11",
-    "Chapter 11: global localisation and symmetry",
+    "Global localisation and symmetry",
     [
         Question("predict", "Predictions", (keep, luck)),
         Question("hand", "By hand", (hand,)),

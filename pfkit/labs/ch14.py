@@ -1,4 +1,4 @@
-"""Chapter 14: a real robot. Questions on reading, calibrating and judging recorded logs."""
+"""A real robot. Questions on reading, calibrating and judging recorded logs."""
 
 import json
 from functools import cache
@@ -518,7 +518,7 @@ report = Text(
 
 LAB = Lab(
     "ch14",
-    "Chapter 14: a real robot",
+    "A real robot",
     [
         Question("1", "By hand", (held, lever)),
         Question("2", "Reading and calibrating", (follow, bias)),

@@ -1,4 +1,4 @@
-"""Chapter 11: its keys, its solutions, its experiments' margins.
+"""Global localisation: its keys, its solutions, its experiments' margins.
 
 What holds for all items (references, mistakes, completeness) is in test_items.py.
 """

@@ -1,4 +1,4 @@
-"""Chapter 14: its solutions, its experiments' margins, and the excerpt that it carries.
+"""A real robot: its solutions, its experiments' margins, and the excerpt that it carries.
 
 What holds for all items (references, mistakes, completeness) is in test_items.py.
 """

@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to the questions before chapter 1. One block per item; `# %% id` names its cell."""
+"""Prerequisites: solutions. One block per item; `# %% id` names its cell."""
 
 # %% column
 column = "b"

@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 1. One block per item; `# %% id` names the answer cell it belongs to.
+"""Bayes filter: solutions. One block per item; `# %% id` names the answer cell it belongs to.
 
 The experiments use the chapter's own `drive`.
 """

@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 3. One block per item; `# %% id` names the answer cell it belongs to.
+"""Motion: solutions. One block per item; `# %% id` names the answer cell it belongs to.
 
 They use the chapter's own `motion`, `u` and `together`.
 """

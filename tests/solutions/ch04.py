@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 4. One block per item; `# %% id` names the answer cell it belongs to.
+"""Sensing: solutions. One block per item; `# %% id` names the answer cell it belongs to.
 
 They use the chapter's own `world`, `pose`, `sensor` and `look`.
 """

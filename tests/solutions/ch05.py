@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 5. One block per item; `# %% id` names the answer cell it belongs to."""
+"""Importance weights: solutions. One block per item; `# %% id` names the answer cell it belongs to."""
 
 # %% narrow
 narrow = ("b", 70)

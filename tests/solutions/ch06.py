@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 6. One block per item; `# %% id` names the answer cell it belongs to."""
+"""Particle filter: solutions. One block per item; `# %% id` names the answer cell it belongs to."""
 
 # %% no_copy
 no_copy = ("d", 80)

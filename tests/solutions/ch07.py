@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 7. One block per item; `# %% id` names the answer cell it belongs to."""
+"""Resampling: solutions. One block per item; `# %% id` names the answer cell it belongs to."""
 
 # %% clock
 clock = ("c", 50)

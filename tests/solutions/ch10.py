@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 10. One block per item; `# %% id` names the answer cell it belongs to."""
+"""Outliers: solutions. One block per item; `# %% id` names the answer cell it belongs to."""
 
 # %% lock
 lock = ("b", 60)

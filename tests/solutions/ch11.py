@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 11. One block per item; `# %% id` names the answer cell it belongs to.
+"""Global localisation: solutions. One block per item; `# %% id` names the answer cell it belongs to.
 
 They use the chapter's own `world`, `start`, `sensor`, `motion`, `g` and `forward`.
 """

@@ -1,6 +1,6 @@
 # ruff: noqa
 # mypy: ignore-errors
-"""Solutions to chapter 14. One block per item; `# %% id` names the answer cell it belongs to."""
+"""Real robot: solutions. One block per item; `# %% id` names the answer cell it belongs to."""
 
 # %% biased
 biased = ("c", 70)

@@ -39,7 +39,7 @@ def faults(text):
         "Leung drove 1,354<!--given--> m",
         "with 1,000 particles and 0.135 m",  # from the code
         "some 5.8 % of it",  # 0.0581 of the output
-        "in 2011, Chapter 14, Table 4.4, seeds 7 and 3, version 1.0.4, lab3, `x = 99.5`, $y=77$",
+        "in 2011, Figure 14, Table 4.4, seeds 7 and 3, version 1.0.4, lab3, `x = 99.5`, $y=77$",
         "five of 20",
     ],
 )
@@ -54,7 +54,7 @@ def test_right_numbers_pass(text):
         ("off by 0.0<!--= RMSE of filter --> m", "the cell prints 0.0581"),
         ("off by 0.06<!--= RMSE of smoother --> m", "no cell prints"),
         ("4.1<!--= dead reckoning [3] -->", "no such number"),
-        ("0.6<!--= 02_missing#label -->", "no notebook 02_missing"),
+        ("0.6<!--= missing#label -->", "no notebook on missing"),
         ("0.06<!--= RMSE -->", "no cell prints"),
         ("off by 0.77 m", "occurs in no cell"),
         ("with 5,000 particles", "occurs in no cell"),

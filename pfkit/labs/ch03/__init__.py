@@ -1,4 +1,4 @@
-"""Chapter 3: motion. Questions on arcs, wheels, odometry, and where the errors enter."""
+"""Motion. Questions on arcs, wheels, odometry, and where the errors enter."""
 
 from pfkit.labs.ch03 import arcs, by_hand, clouds, experiments, vehicles
 from pfkit.labs.lab import Lab, Question
@@ -14,5 +14,5 @@ QUESTIONS = (
     Question("code", "Code", (arcs.arc, clouds.sample)),
     Question("break", "Experiments", (experiments.rigid_x, experiments.split_x, experiments.why)),
 )
-LAB = Lab("ch03", "Chapter 3: motion", list(QUESTIONS))
+LAB = Lab("ch03", "Motion", list(QUESTIONS))
 check, use, predict, answer, summary, save, load = LAB.verbs()

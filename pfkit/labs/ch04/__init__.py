@@ -1,4 +1,4 @@
-"""Chapter 4: sensing. Questions on what a measurement says about a pose."""
+"""Sensing. Questions on what a measurement says about a pose."""
 
 from pfkit.labs.ch04 import by_hand, experiments, ideas, score, there_and_back
 from pfkit.labs.lab import Lab, Question
@@ -10,5 +10,5 @@ QUESTIONS = (
     Question("code", "Code", (there_and_back.expected, there_and_back.place, score.score)),
     Question("break", "Experiments", (experiments.average_x, experiments.beams_x, ideas.why)),
 )
-LAB = Lab("ch04", "Chapter 4: sensing", list(QUESTIONS))
+LAB = Lab("ch04", "Sensing", list(QUESTIONS))
 check, use, predict, answer, summary, save, load = LAB.verbs()

@@ -1,4 +1,4 @@
-"""Chapter 4: what averaging and underflow do, predicted and then measured."""
+"""What averaging and underflow do, predicted and then measured."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Chapter 4: what a likelihood is."""
+"""What a likelihood is."""
 
 import numpy as np
 

@@ -1,4 +1,4 @@
-"""Chapter 4 in code: the log-likelihood of a set of readings."""
+"""In code: the log-likelihood of a set of readings."""
 
 import numpy as np
 
