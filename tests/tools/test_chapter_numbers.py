@@ -108,7 +108,7 @@ def test_a_chapter_is_inserted_by_renaming_and_filling(course):
     target = course / "notebooks" / f"{new:02}_tea.ipynb"
     target.write_text(json.dumps(page), "utf-8")
     add_line_behind(course / "_toc.yml", f"_{behind}", f"      - file: notebooks/{new:02}_tea")
-    row = "| 0 | [Afternoon tea](../notebooks/00_tea.ipynb) | pour | ready |"
+    row = "| 0 | [Afternoon tea](../notebooks/00_tea.ipynb) | ready | pour |"
     add_line_behind(course / tool.MAP, f"_{behind}.ipynb", row)
     assert len(tool.problems(course)) > 20
     fill(course)
@@ -130,7 +130,7 @@ def test_a_chapter_is_inserted_by_renaming_and_filling(course):
 def test_taken_back_no_byte_has_changed(course):
     before = {path.name: path.read_bytes() for path in tool.pages(course)}
     original = (course / tool.MAP).read_text(encoding="utf-8")
-    longer = original.replace("| 1 |", "| 0 | Before everything | wait | to come |\n| 1 |", 1)
+    longer = original.replace("| 1 |", "| 0 | Before everything | to come | wait |\n| 1 |", 1)
     for step, table in ((1, longer), (-1, original)):
         rename(course, step)
         (course / tool.MAP).write_text(table, "utf-8", newline="\n")
