@@ -83,6 +83,8 @@ from pfkit.labs.items import (
     Prediction,
     Property,
     Text,
+    code,
+    experiment,
 )
 from pfkit.labs.lab import Lab, LabError, Question
 from pfkit.labs.replay import replay
@@ -100,5 +102,7 @@ __all__ = [
     "Property",
     "Question",
     "Text",
+    "code",
+    "experiment",
     "replay",
 ]
