@@ -99,11 +99,16 @@ def bound_and_used(source: str) -> tuple[set[str], set[str]]:
     """
     try:
         top = symtable.symtable(source, "<cell>", "exec")
-    except SyntaxError:
+    except (SyntaxError, ValueError, RecursionError, MemoryError):
         return set(), set()
     names = top.get_symbols()
     bound = {n.get_name() for n in names if n.is_assigned() or n.is_imported() or n.is_namespace()}
     used = {n.get_name() for n in names if n.is_referenced()}
+    used |= bound & {  # ``x += 1`` reads x, of which a table of symbols does not speak
+        n.target.id
+        for n in ast.walk(ast.parse(source))
+        if isinstance(n, ast.AugAssign) and isinstance(n.target, ast.Name)
+    }
     inner = list(top.get_children())
     while inner:
         table = inner.pop()

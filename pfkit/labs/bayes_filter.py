@@ -1,4 +1,4 @@
-"""Chapter 1: the Bayes filter in a corridor. Two lines, by hand, in code and under test."""
+"""The Bayes filter in a corridor. Two lines, by hand, in code and under test."""
 
 import numpy as np
 
@@ -226,6 +226,7 @@ def _drive(rng, B, T, looks=1, real=(0.8, 0.1), assumed=(0.8, 0.1)):
     points=2,
     after=twice,
     runs=40,
+    pool=240,
     claim="counting each look twice makes robots claim more than they know",
     test="mean of 40 runs (claim minus share right) between 0.05 and 0.3",
     margin="the mean of 40 has a standard error of about 0.005",
@@ -264,6 +265,7 @@ def _ruled_out(rng, assumed=1e-12):
     points=2,
     after=zero,
     runs=150,
+    pool=600,
     claim="about three in four robots once give their own cell almost no belief",
     test="share in 150 runs between 0.56 and 0.92",
     margin="the share of 150 has a standard error of about 0.035",
@@ -297,8 +299,8 @@ why = Text(
     says that a product never leaves zero, whatever the later reports
     says that a very small belief recovers after enough reports
     puts the small number into the sensor (or motion) model, not onto the result""",
-    model="A zero stays zero under every later multiplication, a small number grows back when "
-    "reports agree with it. "
+    model="A zero stays zero under every later multiplication, while a small number grows back "
+    "when reports agree with it. "
     "The small number belongs into the sensor model, as the chance that a report is false, "
     "because then it means something.",
 )

@@ -5,8 +5,10 @@ from functools import cache
 from importlib import import_module
 from importlib.util import find_spec
 from pathlib import Path
+from typing import Any
 
 from pfkit import labs
+from pfkit.labs.grade.cells import code_cells, labs_imported
 from pfkit.labs.lab import Lab
 
 
@@ -24,3 +26,8 @@ def names() -> tuple[str, ...]:
 def all_labs() -> dict[str, Lab]:
     """Name -> `Lab` of each question module."""
     return {name: import_module(f"{labs.__name__}.{name}").LAB for name in names()}
+
+
+def asked_in(book: dict[str, Any]) -> set[str]:
+    """Names of the question modules that the cells of a notebook (its JSON) import."""
+    return set().union(*(labs_imported(s) for _, s in code_cells(book))).intersection(names())

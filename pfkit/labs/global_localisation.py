@@ -1,4 +1,4 @@
-"""Chapter 11: global localisation and symmetry. Questions on copies that look alike."""
+"""Global localisation and symmetry. Questions on copies that look alike."""
 
 import numpy as np
 
@@ -323,6 +323,7 @@ def _both_sizes(f, rng, runs):
     points=2,
     after=keep,
     runs=40,
+    pool=200,
     claim="more particles found more of the four hypotheses, and 1,000 do not found them all",
     test="mean at 10,000 above mean at 1,000 by 1 or more; mean at 1,000 below 2.4",
     measure=_both_sizes,
@@ -376,6 +377,7 @@ alive_x.wrong("""mass: returns a mass, not a count
     points=2,
     after=luck,
     runs=200,
+    pool=1_500,
     claim="in an exactly symmetric world the filter ends at the robot once in four runs",
     test="each of the four shares of 200 runs within 0.135 of a quarter",
     measure=lambda f, rng, runs: np.asarray(f(rng, runs)),

@@ -1,4 +1,4 @@
-"""Chapter 5: importance sampling and weights. What is a draw from the wrong density worth?"""
+"""Importance sampling and weights. What is a draw from the wrong density worth?"""
 
 import numpy as np
 
@@ -211,6 +211,7 @@ BREAK = Question("Experiments")
     points=2,
     after=narrow,
     runs=100,
+    pool=1_500,
     claim="an unbiased mean weight is below 1 in most runs when the proposal is too narrow",
     test="at least 60 of 100 runs below 1, median between 0.7 and 0.95",
     margin="5 standard errors on both counts: binomial share 0.81, median 0.87 with sd 0.015",
@@ -244,6 +245,7 @@ narrow_x.wrong("""normalised: averages normalised weights, which is 1 / M whatev
     points=2,
     after=dim,
     runs=20,
+    pool=1_500,
     claim="in three dimensions about one particle in a thousand counts",
     test="mean of 20 runs between 0.0009 and 0.0016",
     margin="the mean of 20 has sd 0.00005: 7 standard errors from either edge",

@@ -88,7 +88,7 @@ class Lab:
         questions: list[Question] = []
         for module in modules or (sys.modules[name],):
             for bound, value in list(vars(module).items()):
-                if isinstance(value, Question):
+                if isinstance(value, Question) and value not in questions:
                     value.id = value.id or bound.lower()
                     questions.append(value)
                 elif isinstance(value, Item) and not any(value in q.items for q in questions):
@@ -292,7 +292,7 @@ class Lab:
 
     def load(self, path: str | Path | None = None) -> str:
         """Read them back. A file that cannot be read is set aside and named."""
-        data, told = progress.read(Path(path or f"{self.name}_answers.json"), self.name)
+        data, told = progress.read(Path(path or progress.file_of(self.name)), self.name)
         for name, kept in (data or {}).get("answers", {}).items():
             if name in self.items:
                 self.answers.setdefault(name, kept)

@@ -1,4 +1,4 @@
-"""Chapter 10: outliers. Mixtures, gates and their trap door."""
+"""Outliers. Mixtures, gates and their trap door."""
 
 import numpy as np
 
@@ -194,6 +194,7 @@ CLEAN = target.target_log("circle", "low")[:60]
     points=2,
     after=lock,
     runs=20,
+    pool=120,
     claim="from a start anywhere the gate rejects every report, honest or not",
     test="every one of 20 runs rejects at least 95 %",
     margin="the mean likelihood of an honest report would have to be thirty times its mean",
@@ -227,6 +228,7 @@ lock_x.wrong("""no-gate: leaves the gate open
     points=2,
     after=ushape,
     runs=10,
+    pool=60,
     claim="the gate rejects honest reports at both ends of the modelled noise, none between",
     test="every one of 10 runs: at least 0.7, at most 0.05, at least 0.99",
     margin="at 1e-4 the share is 0.97 with sd 0.025: 10 of them above 0.7; the others are certain",

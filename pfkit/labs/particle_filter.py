@@ -1,4 +1,4 @@
-"""Chapter 6: the particle filter, assembled. Questions on one turn of the filter."""
+"""The particle filter, assembled. Questions on one turn of the filter."""
 
 import numpy as np
 
@@ -306,6 +306,7 @@ ABLATION = Question("What breaks")
     points=2,
     after=no_copy,
     runs=12,
+    pool=120,
     claim="without resampling a handful of 1,000 particles carries everything",
     test="median of 12 runs at most 5 and none above 60",
     margin="of 600 runs none above 1.2",
@@ -345,6 +346,7 @@ no_copy_x.wrong("""share: returns a share, not a number of particles
     points=2,
     after=frozen,
     runs=20,
+    pool=400,
     claim="without diffusion the cloud collapses onto one or two particles",
     test="median of 20 runs at most 2 and none above 5",
     margin="of 400 runs none above 2, the median 1",
@@ -380,8 +382,8 @@ blind = Text(
     says that it looks at weights only, not at places
     says that copies of one particle have equal weights, hence ESS = M
     names distinct particles, spread, evidence or error as what would have told""",
-    model="The ESS looks only at how equal the weights are, and copies of one guess weigh the same. "
-    "So it is M even when every particle stands in the same wrong place. "
+    model="The ESS looks only at how equal the weights are, and copies of one guess weigh the "
+    "same. So it is M even when every particle stands in the same wrong place. "
     "The number of distinct particles, or a falling evidence, would have told us.",
 )
 

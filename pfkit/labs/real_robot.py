@@ -1,4 +1,4 @@
-"""Chapter 14: a real robot. Questions on reading, calibrating and judging recorded logs."""
+"""A real robot. Questions on reading, calibrating and judging recorded logs."""
 
 import json
 from functools import cache
@@ -206,6 +206,7 @@ def _two_columns(run, rng, runs):
     pf.run gives a History: rmse of its estimate, and the mean of its position_sd.""",
     after=biased,
     runs=12,
+    pool=36,
     claim="without a bias in the model the error is more than twice the spread that is reported",
     test="median of error / spread over 12 runs is above 1.6, median error above 1.5 m",
     measure=_two_columns,
@@ -266,6 +267,7 @@ def stretch():
     Return pf.position_error(pf.mean_pose(bel), log.truth[:, -1]).""",
     after=lost,
     runs=15,
+    pool=75,
     claim="with staged weighting most global starts end within half a metre",
     test="at least 9 of 15 runs end with an error below 0.5 m",
     measure=lambda run, rng, runs: np.array([float(run(rng)) for _ in range(runs)]),

@@ -1,4 +1,4 @@
-"""Chapter 7: resampling variance. What does the copying cost?"""
+"""Resampling variance. What does the copying cost?"""
 
 import numpy as np
 
@@ -238,6 +238,7 @@ LUCK = Question("Luck")
     points=2,
     after=clock,
     runs=150,
+    pool=1_500,
     claim="two clusters of 50 last about 2 N ln 2 = 139 multinomial resamplings",
     test="mean of 150 runs between 95 and 185 (exact: 136.6)",
     margin="the mean of 150 has a standard error of about 8: 5 and 6 of them",
@@ -260,6 +261,7 @@ clock_x.wrong("""double: starts with 100 particles in each cluster
     How many particles are there together?
     N is 100.
     k = 50; N = 100.""")(lambda rng: clock_x(rng, 200), when=lambda x: bool(x.mean() > 200))
+clock_x.refuses("a constant at the right value")(lambda rng: 137)
 
 
 @experiment(
@@ -270,6 +272,7 @@ clock_x.wrong("""double: starts with 100 particles in each cluster
     points=2,
     after=best,
     runs=100,
+    pool=1_500,
     claim="with weights in step with the comb, the total of the heavy copies is 500 or 1,000",
     test="variance of 100 runs above 20,000 (multinomial: 188), mean between 600 and 900",
     margin="the mean has a standard error of 25: 6 of them",
@@ -289,6 +292,7 @@ best_x.wrong("""multinomial: uses a scheme whose points are independent: its tot
     lambda rng: best_x(rng, pf.multinomial),
     when=lambda x: bool(x.var() < 2000 and 700 < x.mean() < 800),
 )
+best_x.refuses("a constant at the right value", named="multinomial")(lambda rng: 750)
 best_x.wrong("""light: counts the light particles
     Which indices are heavy?
     The first weight is 1.5: even indices are heavy.

@@ -164,6 +164,9 @@ class Experiment(Function):
         Declared bound on the probability that a right experiment fails (at most 1e-3).
     margin : str
         Distance of the truth from the threshold, in standard errors.
+    pool : int
+        How many independent runs `pfkit.labs.replay` draws its decisions from: fewer where a run
+        is slow, and then the margin carries the claim.
     """
 
     letter: ClassVar[str] = "X"
@@ -174,6 +177,7 @@ class Experiment(Function):
     measure: Callable[[Any, np.random.Generator, int], Any] = each_run
     false_fail: float = 1e-4
     margin: str = ""
+    pool: int = 3_000
     seed: int = 2024
 
     def _identity(self) -> tuple:

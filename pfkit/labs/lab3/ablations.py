@@ -41,6 +41,7 @@ q7a = Prediction("""Resampling each of 400 frames, no process noise: distinct pa
     "ESS is 100; with noise of 1 px more than 60 are distinct",
     test="largest count over runs <= 5; mean ESS > 97; smallest count with noise > 60",
     runs=5,
+    pool=500,
     margin="1 or 2 distinct against 5; ESS 100; 81 (sd 1.8) against 60: 11 standard errors",
     measure=_collapse,
 )
@@ -122,6 +123,7 @@ q8a = Prediction("""Order of the errors: plain mean (A) and weighted mean (B) wi
     claim="plain mean above 150 px, weighted between 5 and 60 px, resampled below 1 px",
     test="means over runs within these bands",
     runs=10,
+    pool=250,
     margin="201 (sd 2.7), 19.8 (2.3), .573 (.006) px: at least 6 standard errors",
     measure=_three,
 )

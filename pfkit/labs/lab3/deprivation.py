@@ -140,6 +140,7 @@ p4a = Prediction("""ESS after 50 frames without resampling, of 1,000 particles
     "with it, it keeps a median between 800 and 950",
     test="mean over runs of the last ESS < 3; median over frames 5 to 50 in the band",
     runs=10,
+    pool=500,
     margin="last ESS 1.7, sd .22: 6 standard errors below 3; median 892, sd .8",
     measure=_histories,
 )

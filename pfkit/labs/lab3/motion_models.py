@@ -49,6 +49,7 @@ q1a = Choice("""What a third state component buys
     test="mean error in frames 200-300: 2-D more than twice that of frames 0-100; "
     "3-D below 10 px and below a quarter of 2-D",
     runs=8,
+    pool=250,
     margin="ratio 4.66 (sd .03) against 2; 4.1 px (.2) against 10: over 25 standard errors",
     measure=_follow,
 )

@@ -46,6 +46,7 @@ def _multinomial_variance(x):
     "multinomial and at most 1/4 for systematic",
     test="means within 5 standard errors, variances within 30 %, systematic at most .26",
     runs=1000,
+    pool=10_000,
     margin="5 standard errors in 15 comparisons: 1e-5",
     measure=_copies,
 )

@@ -112,6 +112,7 @@ q5b.wrong("""both-alike: uses the multinomial formula for both schemes
     claim="the measured shares agree with the closed forms",
     test="|z| < 4.5 for each share that is neither 0 nor 1; the certain one is exactly 1",
     runs=2000,
+    pool=20_000,
     margin="4.5 standard errors, three shares: 2e-5 by the normal law",
     measure=_survived,
 )

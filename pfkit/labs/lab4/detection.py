@@ -162,6 +162,7 @@ mixture.wrong("""maximum: takes the larger of the two parts instead of their sum
     claim="the mean likelihood ranks honest frames above false ones: AUC above .95",
     test="median over runs of the area under the ROC curve, against the known labels",
     runs=5,
+    pool=250,
     margin="AUC .9996, sd below .001: over 40 standard errors",
     measure=_aucs,
 )

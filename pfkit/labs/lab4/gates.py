@@ -40,6 +40,7 @@ q15a = Prediction("""Rejected share of honest frames as the believed sensor vari
     claim="above .8 at variance .0001, below .05 from 1 to 1,000, all at 2,000 and 10,000",
     test="mean share over runs at each variance",
     runs=4,
+    pool=250,
     margin=".992 (sd .004), 0, 1: over 12 standard errors",
     measure=_rejections,
 )

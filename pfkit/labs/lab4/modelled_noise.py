@@ -61,6 +61,7 @@ q9a = Prediction("""True variance 1 px^2. Which believed variance gives the smal
     "smallest of the five errors is at 100 px^2, below .7 px; at 10,000 it rises again",
     test="medians over runs",
     runs=12,
+    pool=500,
     margin="1.20 px (sd .005); .454 (.015) against .7; 1.22 (.13) against .45: 5.8 sd",
     measure=_sensor,
 )
@@ -161,6 +162,7 @@ q10a = Prediction("""Which process variance wins, by the mean of all frames (A) 
     "mean of the last hundred at .01",
     test="smallest median over runs",
     runs=10,
+    pool=250,
     margin="2.4 px (sd .6) against .58; .19 (.03) against .48: 5.6 sd of the logarithm",
     measure=_motion,
 )

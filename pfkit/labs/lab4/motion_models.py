@@ -59,6 +59,7 @@ q11a = Prediction("""On the circling target: which model wants the largest proce
     ".01 or less",
     test="smallest median over runs, per model; fixed above 40 px at .0025",
     runs=6,
+    pool=250,
     margin="fixed 10.6 px (sd .10) against 12.3; line and circle gain 2.4 and 3.3 px: "
     "9 sd; 85 px (3.4 per run) against 40",
     measure=_ratios,
@@ -140,6 +141,7 @@ def _typical(x):
     "the circle with 20 particles beats the line with 160, which beats fixed with 160",
     test="medians over runs, in this order, with gaps of at least 1 px",
     runs=20,
+    pool=500,
     margin="gaps 2.8 px (sd .32) and 4.0 (.10) against 1; gain 1.1 (.16) between .3 and 2: 5 sd",
     measure=_sizes,
 )

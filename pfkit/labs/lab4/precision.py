@@ -30,6 +30,7 @@ def _paired(f, rng, runs):
     test="paired z > 3 for fixed - line and for line - circle; means in the bands; errors "
     "of fixed differ from film to film by an sd above .35 px",
     runs=20,
+    pool=500,
     margin="z 21 and 13 (sd of the log .2) against 3; 11.1 (.19), 3.9 px (.16): 7 sd; sd "
     "over films .86 px against .35: chi-square, 3e-5",
     measure=_paired,

@@ -35,6 +35,7 @@ def _middle(x):
     "the same gate from anywhere above 100 px",
     test="medians over runs",
     runs=5,
+    pool=250,
     margin="28.7 (sd 1.0), .66 (.02), .65 (.03), 199 (6) px: over 14 standard errors",
     measure=_four,
 )

@@ -5,10 +5,8 @@ Every model here is a function of (pose, u, alpha, rng).
 
 import numpy as np
 
-from pfkit.labs import Question, code
+from pfkit.labs import code
 from pfkit.labs.motion.arcs import arc, near, sinc
-
-CLOUDS = Question("Clouds")
 
 
 def _variances(u, alpha):

@@ -1,23 +1,10 @@
-"""The two predictions, and the experiments that decide them."""
+"""The experiments that decide the predictions."""
 
 import numpy as np
 
 import pfkit as pf
-from pfkit.labs import Prediction, Question, Text, experiment
-
-PREDICT = Question("Predictions")
-
-rigid = Prediction("""One error for the whole cloud, twelve steps long
-    a  as wide: the errors are equally large
-    b  half as wide
-    c* as wide as at the start: it has not grown at all
-    d  wider, because the errors no longer cancel""")
-
-split = Prediction("""Four seconds in one step, or in sixteen
-    a  the same: it is the same robot
-    b* four times as large with the single step
-    c  sixteen times as large with the single step
-    d  four times as large with the sixteen steps""")
+from pfkit.labs import Question, Text, experiment
+from pfkit.labs.motion.predictions import rigid, split
 
 BREAK = Question("Experiments")
 
@@ -46,6 +33,7 @@ def _spreads(rng, M=500, steps=12):
     points=2,
     after=rigid,
     runs=20,
+    pool=300,
     claim="a cloud with common errors does not grow; one with errors of its own does",
     test="mean ratio of the spreads over 20 runs between 8.5 and 10.5",
     margin="the ratio has mean 9.47 and sd 0.35; the mean of 20 has 0.08: 12 standard errors",
@@ -95,6 +83,7 @@ def _split_sds(rng, M=2000, parts=16, scaled=False):
     points=2,
     after=split,
     runs=20,
+    pool=300,
     claim="a drive cut into 16 steps has a quarter of the standard deviation",
     test="mean ratio over 20 runs between 3.8 and 4.2",
     margin="the ratio has mean 4 and sd 0.09; the mean of 20 has 0.02: 10 standard errors",

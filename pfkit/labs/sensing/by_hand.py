@@ -1,4 +1,4 @@
-"""Chapter 4 by hand: a bearing, and a weight."""
+"""By hand: a bearing, and a weight."""
 
 import numpy as np
 

@@ -1,23 +1,10 @@
-"""Chapter 4: what averaging and underflow do, predicted and then measured."""
+"""What averaging and underflow do, measured."""
 
 import numpy as np
 
 import pfkit as pf
-from pfkit.labs import Prediction, Question, experiment
-
-PREDICT = Question("Predictions")
-
-average = Prediction("""Averaging likelihoods instead of multiplying them
-    a  as wide: both use all four numbers
-    b  wider by a few per cent
-    c* three to five times as wide
-    d  narrower, because averaging removes noise""")
-
-beams = Prediction("""Share of weights that are exactly zero after five laser beams
-    a  none: a Gaussian is never zero
-    b  about one in a hundred
-    c  about one in ten
-    d* more than half""")
+from pfkit.labs import Question, Text, experiment
+from pfkit.labs.sensing.predictions import average, beams
 
 BREAK = Question("Experiments")
 
@@ -47,6 +34,7 @@ def _spreads(rng, K=2, M=3000):
     points=2,
     after=average,
     runs=20,
+    pool=300,
     claim="averaging leaves the belief three to five times as wide",
     test="median of 20 runs between 3 and 5, none below 2",
     margin="median 3.6, the median of 20 runs has sd 0.11: 5 standard errors",
@@ -97,6 +85,7 @@ def _zeros(rng, K=5, sigma=0.1, M=1000):
     points=2,
     after=beams,
     runs=30,
+    pool=300,
     claim="the plain product of five beams is exactly zero for more than half of a lost cloud",
     test="mean of 30 runs between 0.45 and 0.75",
     margin="mean 0.6, the mean of 30 runs has sd 0.03: 5 standard errors",
@@ -123,4 +112,15 @@ beams_x.wrong("""count: returns a number of particles, not a share
     Divide by the number of particles.
     np.mean, not np.sum""")(
     lambda rng: np.sum(_zeros(rng) == 0), when=lambda x: bool((x > 1).any())
+)
+
+why = Text(
+    """Why multiply, and why in logarithms?
+    says that the measurements are independent given the pose, so that densities multiply
+    says that an average lets one good measurement excuse an impossible one
+    says that products of small numbers underflow to zero and sums of logarithms do not""",
+    model="Given the pose the errors of the measurements are independent, so their densities "
+    "multiply. An average adds densities of different units, and lets one good reading excuse "
+    "an impossible one. Products of many small numbers round to zero, while their logarithms "
+    "only add up.",
 )

@@ -1,8 +1,8 @@
-"""Chapter 4: what a likelihood is."""
+"""What a likelihood is."""
 
 import numpy as np
 
-from pfkit.labs import Choice, Numeric, Question, Text
+from pfkit.labs import Choice, Numeric, Question
 
 IDEA = Question("What a likelihood is")
 
@@ -50,14 +50,3 @@ field = Choice("""A beam would have to fly through one wall to end exactly at th
        = The other way round: the field is happy with any end that touches a wall.
     d  neither
        = The beam model compares with the first wall, and finds the reading too long.""")
-
-why = Text(
-    """Why multiply, and why in logarithms?
-    says that the measurements are independent given the pose, so that densities multiply
-    says that an average lets one good measurement excuse an impossible one
-    says that products of small numbers underflow to zero and sums of logarithms do not""",
-    model="Given the pose the errors of the measurements are independent, so their densities "
-    "multiply. An average adds densities of different units, and lets one good reading excuse "
-    "an impossible one. Products of many small numbers round to zero, while their logarithms "
-    "only add up.",
-)

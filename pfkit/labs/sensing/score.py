@@ -1,12 +1,10 @@
-"""Chapter 4 in code: the log-likelihood of a set of readings."""
+"""The log-likelihood of a set of readings."""
 
 import numpy as np
 
 import pfkit as pf
-from pfkit.labs import Question, code
+from pfkit.labs import code
 from pfkit.labs.sensing.there_and_back import expected, poses_at_random
-
-SCORE = Question("Score")
 
 
 def _errors(z, m, pose):

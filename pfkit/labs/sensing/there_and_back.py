@@ -1,4 +1,4 @@
-"""Chapter 4 in code: from a pose to its expected, and from the expected to the landmark."""
+"""From a pose to its reading, and from the reading to the landmark."""
 
 import numpy as np
 

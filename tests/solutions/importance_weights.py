@@ -24,7 +24,7 @@ threshold = 1000 / (1 + 1000 * 999 * 4e-10)
 
 
 # %% from_variance
-def from_variance(s2, M):
+def ess_from_variance(s2, M):
     # BEGIN SOLUTION
     return M / (1 + M * (M - 1) * s2)
     # END SOLUTION

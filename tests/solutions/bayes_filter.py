@@ -13,11 +13,11 @@ zero = ("d", 60)
 
 # %% moved
 bel = np.array([0.2, 0.2, 0.025, 0.025]) / 0.45
-moved = 0.9 * np.roll(bel, 1) + 0.1 * bel
+moved_by_hand = 0.9 * np.roll(bel, 1) + 0.1 * bel
 
 # %% looked
-products = moved * np.array([0.2, 0.2, 0.9, 0.9])
-looked = (products[2] / products.sum(), products.sum())
+products = moved_by_hand * np.array([0.2, 0.2, 0.9, 0.9])
+looked_by_hand = (products[2] / products.sum(), products.sum())
 
 # %% markov
 markov = "b"
@@ -35,7 +35,7 @@ def correct(bel, likelihood):
 
 
 # %% predict_line
-def predict_line(bel, moves):
+def predict(bel, moves):
     # BEGIN SOLUTION
     return sum(p * np.roll(bel, cells) for cells, p in moves.items())
     # END SOLUTION
