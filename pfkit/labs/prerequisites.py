@@ -1,4 +1,4 @@
-"""Before chapter 1: five questions, to see whether the course starts where you stand."""
+"""Before the course: five questions, to see whether the course starts where you stand."""
 
 import math
 

@@ -48,7 +48,7 @@ def find(name: str, path: Path | None = None) -> Pristine:
     Parameters
     ----------
     name : str
-        A module of `pfkit.labs`, such as ``"lab3"`` or ``"ch07"``.
+        A module of `pfkit.labs`, such as ``"lab3"`` or ``"resampling"``.
     path : Path, optional
         The unanswered notebook; by default the one of this course that imports the module.
 
