@@ -5,6 +5,8 @@
    On a web host the files are fetched; from a folder the page hands them over as ArrayBuffers. */
 "use strict";
 
+const MOST = 1e9; // bytes: beyond it Python gets a MemoryError, and the machine keeps the rest
+
 let python, host, cells;
 
 function tell(progress, fraction) { postMessage({ progress, fraction }); }
@@ -41,7 +43,16 @@ async function collect({ base, version, files }) {
   return Object.fromEntries(names.map((n, i) => [n, buffers[i]]));
 }
 
+function limitMemory() {
+  const { grow } = WebAssembly.Memory.prototype;
+  WebAssembly.Memory.prototype.grow = function (pages) {
+    if (this.buffer.byteLength + 65536 * pages > MOST) throw new RangeError("the page's memory is used up");
+    return grow.call(this, pages);
+  };
+}
+
 async function boot(message) {
+  limitMemory();
   const files = await collect(message);
   const text = (name) => new TextDecoder().decode(files[name]);
   const types = { wasm: "application/wasm", json: "application/json", zip: "application/zip" };
@@ -66,7 +77,7 @@ os.chdir("${folder.extractDir}/notebooks")`);
   tell("Importing pfkit", 0.9);
   python.runPython("from pfkit.explore.wasm import accept_int64; accept_int64()");
   if (message.kind === "cells") {
-    cells = python.runPython("from pfkit.explore.cells import Cells; Cells()");
+    cells = python.runPython("from pfkit.labs.cells import Cells; Cells()");
   } else host = python.runPython("import pfkit.explore.host as h; h.Host()");
   /* From here on nothing may be fetched: what the page computes stays in the page. */
   for (const name of ["fetch", "XMLHttpRequest", "WebSocket", "EventSource", "WebTransport",
@@ -102,6 +113,7 @@ const DO = {
     return { drawing, report, ms: performance.now() - start };
   },
   cell: (m) => cells.run(m.cells, m.index),
+  memory: () => python._module.HEAP8.length,
   progress: (m) => cells.progress(m.lab),
   restore: (m) => cells.restore(m.lab, m.text),
 };

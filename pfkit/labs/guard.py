@@ -28,6 +28,7 @@ import numpy as np
 
 PRINT_LIMIT = 2_000  # characters of a student's output that we keep
 TIME_LIMIT = 10.0  # seconds of computing, where the platform has an alarm clock
+PAGE_LIMIT = 30  # seconds of a cell in a page, which has none: there its Python is ended
 PATIENCE = 6.0  # the wall clock may show so many times more: machines are busy, code may sleep
 
 
@@ -35,7 +36,7 @@ class TooSlow(BaseException):
     """The alarm rang. Not an `Exception`, so that ``except Exception`` does not swallow it."""
 
 
-class _Capped(io.TextIOBase):
+class Capped(io.TextIOBase):
     """A text stream that keeps the first characters and counts the rest."""
 
     def __init__(self, limit: int) -> None:
@@ -88,9 +89,9 @@ def _alarm(seconds: float) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def hushed(limit: int = PRINT_LIMIT) -> Iterator[_Capped]:
+def hushed(limit: int = PRINT_LIMIT) -> Iterator[Capped]:
     """Catch what is printed, and silence warnings of Python and NumPy."""
-    stream = _Capped(limit)
+    stream = Capped(limit)
     with (
         contextlib.redirect_stdout(stream),
         contextlib.redirect_stderr(stream),
@@ -152,9 +153,11 @@ class Ran:
 def describe(error: BaseException) -> str:
     """One line about an exception: its type, its message, the line of the student's code."""
     if isinstance(error, TooSlow):
-        return "stopped, it took too long: does a loop never end?"
+        return f"stopped, it took longer than {TIME_LIMIT:.0f} s: does a loop never end?"
     if isinstance(error, RecursionError):
-        return "it calls itself without end (RecursionError)"
+        return "it calls itself without end (RecursionError)" + _where(error)
+    if isinstance(error, MemoryError):
+        return "it asks for more memory than there is (MemoryError)" + _where(error)
     if isinstance(error, ValueError) and (words := _of_numpy(error)):
         return words + _where(error)
     try:
@@ -165,10 +168,12 @@ def describe(error: BaseException) -> str:
 
 
 def _of_numpy(error: ValueError) -> str:
-    """Two messages of NumPy that beginners meet daily, in plainer words; "" for others."""
+    """Messages of NumPy that beginners meet daily, in plainer words; "" for others."""
     told = error.args[0] if error.args and isinstance(error.args[0], str) else ""
     if "inhomogeneous" in told:
         return "parts of its result differ in length, so they form no array"
+    if told.startswith(("array is too big", "Maximum allowed dimension")):
+        return "its array needs more memory than there is"
     if told.startswith("The truth value of an array"):
         return "an array stands where one True or False is needed"
     return ""
@@ -180,7 +185,10 @@ def _where(error: BaseException) -> str:
     for frame in traceback.extract_tb(error.__traceback__):
         if "<ipython-input" in frame.filename or "ipykernel_" in frame.filename:
             theirs = frame
-    return f" (line {theirs.lineno} of the cell, in {theirs.name})" if theirs else ""
+    if theirs is None:
+        return ""
+    inside = "" if theirs.name == "<module>" else f", in {theirs.name}"
+    return f" (line {theirs.lineno} of the cell{inside})"
 
 
 def guarded(call: Callable[[], Any], seconds: float = TIME_LIMIT) -> Ran:
