@@ -14,9 +14,10 @@ With the keyboard: Tab from option to option, Space to choose, Tab and Space for
 from __future__ import annotations
 
 import os
-import sys
+from html import escape
 from typing import TYPE_CHECKING, Any
 
+from pfkit.labs.executed import shell
 from pfkit.labs.items import Choice, Item, Prediction
 
 if TYPE_CHECKING:
@@ -25,9 +26,7 @@ if TYPE_CHECKING:
 
 def front_end_present() -> bool:
     """Did a person's front end send the request that is running now?"""
-    ipython = sys.modules.get("IPython")
-    shell = ipython.get_ipython() if ipython else None
-    kernel = getattr(shell, "kernel", None)
+    kernel = getattr(shell(), "kernel", None)
     if kernel is None:
         return False
     try:
@@ -52,23 +51,33 @@ def offer(lab: Lab, item: Item) -> bool:
     return True
 
 
+def _number(text: str) -> float | str | None:
+    """What was typed into the field: a number, nothing yet, or a text that the lab refuses."""
+    try:
+        value = float(text.strip(" %")) if text.strip(" %") else None
+        return int(value) if value is not None and value.is_integer() else value
+    except ValueError:
+        return text
+
+
 def build(lab: Lab, item: Choice | Prediction, widgets: Any) -> Any:
-    """The control: one radio button per option, a slider for sureness, a button, the verdict."""
+    """The control: one radio button per option, a field for sureness, a button, the verdict."""
     radio = widgets.RadioButtons(
         options=[(f"({k}) {text}", k) for k, text in item.options.items()],
         value=None,
         layout=widgets.Layout(width="max-content"),
     )
     is_guess = isinstance(item, Prediction)
-    sure = widgets.IntSlider(value=60, min=0, max=100, step=5, description="sure, %")
+    sure = widgets.Text(placeholder="0 to 100", description="sure, %")
     button = widgets.Button(description="Lock" if is_guess else "Check")
     told = widgets.HTML()
 
     def press(_: Any) -> None:
-        given = (radio.value, sure.value) if is_guess else radio.value
+        given = (radio.value, _number(sure.value)) if is_guess else radio.value
         verdict = lab.check(item.id, given if radio.value else ...)
         hand_in = f"To hand it in, write {item.id} = {given!r} in the cell above."
-        told.value = verdict._repr_html_() + (f"<p>{hand_in}</p>" if radio.value else "")
+        done = radio.value and (verdict.status == "predicted" or not is_guess)
+        told.value = verdict._repr_html_() + (f"<p>{escape(hand_in)}</p>" if done else "")
 
     button.on_click(press)
     parts = [radio, sure, button, told] if is_guess else [radio, button, told]

@@ -4,7 +4,7 @@
 
     lab.check("q4b", systematic)              # a verdict; never raises
     systematic = lab.use("q4b", systematic)   # your answer if it passes, else the reference
-    lab.predict("q7a", ("b", 70))             # locked: (b), 70 % sure
+    lab.predict("q7a", ("b", 70))             # locked: (b), 70 % sure; not without the 70
     lab.summary()                             # points, and your calibration
     lab.save(), lab.load()
 
@@ -14,14 +14,12 @@ With the environment variable ``PFKIT_LABS_STRICT=1`` a check that is not passed
 
 import inspect
 import os
-import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
-from pfkit.labs import controls, progress
+from pfkit.labs import controls, executed, progress
 from pfkit.labs.guard import guarded
 from pfkit.labs.items import Experiment, Item, Judgement, Prediction, Text, is_unanswered
 from pfkit.labs.summary import Summary, Tally
@@ -34,20 +32,13 @@ class LabError(AssertionError):
     """Raised by `Lab.check` under the strict switch only."""
 
 
-@dataclass(eq=False)
+@dataclass(frozen=True)
 class Question:
-    """A question of the lab, such as P3; the items bound after it belong to it.
+    """A question of the lab, such as P3, with its items."""
 
-    Parameters
-    ----------
-    title : str
-    id : str
-        By default the name that its module binds it to, in small letters.
-    """
-
+    id: str
     title: str
-    id: str = ""
-    items: list[Item] = field(default_factory=list)
+    items: tuple[Item, ...]
 
 
 class Lab:
@@ -59,7 +50,6 @@ class Lab:
         ``"lab3"``; also names the progress file.
     title : str
     questions : sequence of Question
-        `Lab.of` collects them from modules.
     """
 
     def __init__(self, name: str, title: str, questions: Sequence[Question]) -> None:
@@ -68,35 +58,12 @@ class Lab:
         for item in (i for q in self.questions for i in q.items):
             if item.id in self.items:
                 raise ValueError(f"{name} has two items called {item.id!r}: rename one")
-            if item.after and item.after not in self.items.values():
-                raise ValueError(f"{item.id!r} comes after a prediction that stands below it")
+            if item.after and not isinstance(self.items.get(item.after), Prediction):
+                raise ValueError(f"{item.id!r} comes after {item.after!r}: no such prediction")
             self.items[item.id] = item
+        self.asks_how_sure = True  # the grader takes a bare letter, as older labs did
+        self._executed = executed.watch()
         self.forget()
-
-    @classmethod
-    def of(cls, name: str, title: str, *modules: ModuleType) -> "Lab":
-        """Collect the questions and items that modules bind, in the order in which they do.
-
-        Parameters
-        ----------
-        name : str
-            ``__name__`` of the module that publishes the lab; its last part names the lab.
-        title : str
-        *modules
-            Where the questions stand; by default the module called ``name``.
-        """
-        questions: list[Question] = []
-        for module in modules or (sys.modules[name],):
-            for bound, value in list(vars(module).items()):
-                if isinstance(value, Question) and value not in questions:
-                    value.id = value.id or bound.lower()
-                    questions.append(value)
-                elif isinstance(value, Item) and not any(value in q.items for q in questions):
-                    value.id = value.id or bound
-                    if not questions:
-                        raise ValueError(f"{value.id!r} stands above the first question: add one")
-                    questions[-1].items.append(value)
-        return cls(name.rpartition(".")[2], title, questions)
 
     def forget(self) -> None:
         """Start afresh, as a new student."""
@@ -139,7 +106,11 @@ class Lab:
     answer = check  # reads better for a letter, a number or a text
 
     def predict(self, item_id: str, answer: Any = ...) -> Verdict:
-        """Lock a prediction, ``"a"`` or ``("a", 70)``: the letter, and how sure in per cent."""
+        """Lock a prediction, ``("a", 70)``: the letter, and how sure in per cent.
+
+        A letter alone is not locked, since a lock stays. Files and notebooks that hold one from
+        before still load and are graded.
+        """
         return self.check(item_id, answer)
 
     def use(self, item_id: str, answer: Any = ...) -> Any:
@@ -161,14 +132,15 @@ class Lab:
 
     def _judge(self, item: Item, answer: Any) -> tuple[Judgement, str]:
         """Judgement and status, safe against whatever the answer does."""
+        if told := self._executed.outdated(item.id):
+            return _not_judged(told), "wrong"
 
         def judge() -> Judgement | None:
             return None if is_unanswered(answer) else item.judge(answer)
 
         ran = guarded(judge)
         if ran.error:
-            line = Line("your answer can be run", False, ran.error)
-            return Judgement((line,), None, "Mend this first: nothing else was judged."), "wrong"
+            return _not_judged(ran.error), "wrong"
         if ran.value is None:
             return Judgement(()), "unanswered"
         full, some = ran.value.fraction == 1, ran.value.fraction > 0
@@ -178,8 +150,8 @@ class Lab:
         judged, status = self._judge(item, answer)
         if status == "unanswered":
             return self._keep(Verdict(item.id, status, 0.0, item.points, "no answer yet"))
-        if item.after and item.after.id not in self.predictions:
-            told = f'predict first: lab.predict("{item.after.id}", ...)'
+        if item.after and item.after not in self.predictions:
+            told = f'predict first: lab.predict("{item.after}", ...)'
             return self._keep(Verdict(item.id, "locked", 0.0, item.points, told))
         self.answers[item.id] = {"source": _source(answer), "version": item.version}
         by_hand = isinstance(item, Text)
@@ -222,6 +194,9 @@ class Lab:
         note = "locked; now run the experiment"
         if locked is None:
             choice, sure = item.parse(answer)
+            if sure is None and self.asks_how_sure:
+                line = Line("how sure you are, too", False, f'write ("{choice}", 70) for 70 %')
+                return self._keep(Verdict(item.id, "wrong", 0.0, item.points, "", (line,)))
             locked = {"choice": choice, "sure": sure, "version": item.version}
             self.predictions[item.id] = locked
             self.answers[item.id] = {"source": _source(answer), "version": item.version}
@@ -253,10 +228,9 @@ class Lab:
     def guesses(self) -> list[tuple[str, float | None, bool]]:
         """Predictions whose experiment was checked: (item, sure, right?)."""
         tried = {
-            i.after.id
+            i.after
             for i in self.items.values()
-            if i.after
-            and isinstance(i, Experiment)
+            if isinstance(i, Experiment)
             and i.id in self.verdicts
             and self.verdicts[i.id].status in ("passed", "partial", "wrong")
         }
@@ -292,7 +266,7 @@ class Lab:
 
     def load(self, path: str | Path | None = None) -> str:
         """Read them back. A file that cannot be read is set aside and named."""
-        data, told = progress.read(Path(path or progress.file_of(self.name)), self.name)
+        data, told = progress.read(Path(path or f"{self.name}_answers.json"), self.name)
         for name, kept in (data or {}).get("answers", {}).items():
             if name in self.items:
                 self.answers.setdefault(name, kept)
@@ -301,6 +275,11 @@ class Lab:
             if isinstance(item, Prediction) and kept["choice"] in item.options:
                 self.predictions.setdefault(name, kept)
         return told
+
+
+def _not_judged(why: str) -> Judgement:
+    line = Line("your answer can be run", False, why)
+    return Judgement((line,), None, "Mend this first: nothing else was judged.")
 
 
 def _source(answer: Any, limit: int = 20_000) -> str:
