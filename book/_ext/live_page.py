@@ -51,13 +51,15 @@ from pfkit.errors import PfkitError
 from pfkit.explore import scene as open_scene
 from pfkit.explore.record import record, to_script
 from pfkit.explore.still import to_svg
+from pfkit.labs.guard import PAGE_LIMIT
 from pfkit.labs.items import Choice, Prediction
 
 logger = logging.getLogger(__name__)
 ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
-SCRIPTS = ("palette.js", "render.js", "explorable.js", "page.js")
+SCRIPTS = ("keys.js", "palette.js", "render.js", "explorable.js", "page.js")
+LAB_SCRIPTS = ("store.js", "choices.js", "lab.js")
 STUB = re.compile(r"^(\w+) = \.\.\.\s*(#.*)?$")  # an answer cell that waits for a letter
 LAB_IMPORT = re.compile(r"^\s*from\s+pfkit\.labs\s+import\s+(\w+)(?:\s+as\s+(\w+))?", re.M)
 
@@ -226,7 +228,7 @@ def add_scripts(app: Sphinx, pagename: str, templatename: str, context: Any, doc
     if not (page["runs"] or lab):
         return
     styles = ["explorable.css", *(["lab.css"] if lab else [])]
-    scripts = [*SCRIPTS, *(["lab.js"] if lab else [])]
+    scripts = [*SCRIPTS, *(LAB_SCRIPTS if lab else ())]
     links = [
         f'<link rel="stylesheet" href="{path("live/" + name, resource=True)}?v={v}">'
         for name in styles
@@ -238,7 +240,7 @@ def add_scripts(app: Sphinx, pagename: str, templatename: str, context: Any, doc
         for name in scripts
     ]
     if lab:
-        data = json.dumps(page["lab"]).replace("<", "\\u003c")
+        data = json.dumps({**page["lab"], "seconds": PAGE_LIMIT}).replace("<", "\\u003c")
         tags.insert(0, f'<script type="application/json" id="pf-lab">{data}</script>')
     context["body"] = context.get("body", "") + "\n".join(tags)
 

@@ -1,116 +1,54 @@
 /* Lab cells in the page: each answer cell of the notebook becomes an editor, the check cell after
-   it its Check button. Loaded by pages with answer cells only; needs page.js. Everything that a
-   reader types or imports is text: it is shown with textContent and run by Python in a worker of its
-   own, when the reader asks for it. */
+   it its Check button. Loaded by pages with answer cells only; needs page.js, store.js, choices.js.
+   Everything that a reader types or imports is text: it is shown with textContent and run by
+   Python in a worker of its own, when the reader asks for it. */
 (function (PF) {
   "use strict";
 
   const el = PF.el;
-  const LIMIT = { seconds: 30 }; // visible time after which a cell is stopped
-  const BIGGEST = 2e6;
-  let lab, python, editors = [], bar, busy = null, predictions = {}, memory = {};
+  const BIGGEST = 2e6; // characters of a file to import
+  const LONGEST = 100000; // characters of one imported answer
+  const ROOM = 5e8; // bytes: a Python that holds more is ended after the run
+  let lab, limit, store, python, editors = [], bar, busy = null, predictions = {}, refused = false;
 
-  const keyOf = (item) => `where-am-i/1/${lab.lab}/${item}`;
-
-  /* ---- keeping answers -------------------------------------------------------------------- */
-  function keep(item, value) {
-    memory[item] = value;
-    try {
-      localStorage.setItem(keyOf(item), JSON.stringify(value));
-      return true;
-    } catch {
-      tell("This browser does not let the page keep your answers (storage is refused or full). "
-        + "They stay until you leave: export them.");
-      return false;
-    }
-  }
-
-  function kept(item) {
-    if (memory[item]) return memory[item];
-    try {
-      const value = JSON.parse(localStorage.getItem(keyOf(item)));
-      return value && typeof value.source === "string" ? value : null;
-    } catch {
-      return null;
-    }
-  }
-
-  function tell(text) { bar.note.textContent = text; }
-
-  function answersNow() {
+  /* ---- a file of answers ------------------------------------------------------------------ */
+  function exportAnswers() {
     const answers = {};
     for (const e of editors) {
-      const source = e.get();
-      if (source !== e.cell.source) answers[e.cell.item] = { source, version: e.cell.version };
+      if (e.text !== e.cell.source) answers[e.cell.item] = { source: e.text, version: e.cell.version };
     }
-    return answers;
-  }
-
-  function exportAnswers() {
-    const data = { schema: 1, lab: lab.lab, answers: answersNow(), predictions };
+    const data = { schema: 1, lab: lab.lab, answers, predictions };
     const blob = new Blob([JSON.stringify(data, null, 1) + "\n"], { type: "application/json" });
     const link = el("a", { href: URL.createObjectURL(blob), download: `${lab.lab}_answers.json` });
     document.body.append(link);
     link.click();
     link.remove();
-    tell(`Exported ${Object.keys(data.answers).length} answers to ${lab.lab}_answers.json.`);
-    return data;
+    return `Exported ${Object.keys(answers).length} answers to ${lab.lab}_answers.json.`;
   }
 
   /* An imported file is data: strings go into editors, where nothing runs until the reader says so. */
   function importAnswers(text) {
     let data;
     try {
-      if (text.length > BIGGEST) throw new Error("it is larger than two megabytes");
+      if (text.length > BIGGEST) throw new Error(`it is larger than ${BIGGEST / 1e6} megabytes`);
       data = JSON.parse(text);
       if (!data || typeof data !== "object" || data.schema !== 1) throw new Error("its schema is not 1");
       if (data.lab !== lab.lab) throw new Error("it belongs to another lab");
       if (!data.answers || typeof data.answers !== "object") throw new Error("it holds no answers");
     } catch (error) {
-      tell(`Nothing was imported: ${String(error.message).slice(0, 120)}.`);
-      return 0;
+      return `Nothing was imported: ${String(error.message).slice(0, 120)}.`;
     }
     let n = 0, old = 0;
     adopt(data.predictions);
+    if (Object.keys(predictions).length) editors[0].isKept(store.writePredictions(predictions));
     for (const e of editors) {
-      const entry = Object.prototype.hasOwnProperty.call(data.answers, e.cell.item)
-        ? data.answers[e.cell.item] : null;
-      if (!entry || typeof entry.source !== "string" || entry.source.length > 100000) continue;
-      e.set(asCell(e.cell, entry.source));
+      const entry = Object.hasOwn(data.answers, e.cell.item) ? data.answers[e.cell.item] : null;
+      if (!entry || typeof entry.source !== "string" || entry.source.length > LONGEST) continue;
+      e.editor.set(asCell(e.cell, entry.source));
       n++;
       if (entry.version !== e.cell.version) old++;
     }
-    tell(`Imported ${n} answers.` + (old ? ` ${old} of them answer an earlier version of a question.` : ""));
-    return n;
-  }
-
-  /* Predictions of a file or of the browser's store: a letter that exists, for what is still open. */
-  function adopt(found) {
-    for (const e of editors) {
-      const kept = found && typeof found === "object"
-        && Object.prototype.hasOwnProperty.call(found, e.cell.item) ? found[e.cell.item] : null;
-      const options = e.cell.choose ? e.cell.choose.options : [];
-      if (!kept || predictions[e.cell.item] || !options.some(([k]) => k === kept.choice)) continue;
-      const sure = Number.isFinite(kept.sure) ? kept.sure : null;
-      predictions[e.cell.item] = { choice: kept.choice, sure, version: String(kept.version) };
-      python.told = false; // Python must hear of it before it runs the next cell
-    }
-    storePredictions();
-    showLocks();
-  }
-
-  function showLocks() {
-    for (const e of editors) {
-      if (e.choices && predictions[e.cell.item]) e.lock(predictions[e.cell.item]);
-    }
-  }
-
-  function storePredictions() {
-    if (!Object.keys(predictions).length) return;
-    try {
-      localStorage.setItem(keyOf("*predictions"),
-        JSON.stringify({ schema: 1, lab: lab.lab, answers: {}, predictions }));
-    } catch { /* said when the answer was kept */ }
+    return `Imported ${n} answers.` + (old ? ` ${old} of them answer an earlier version of a question.` : "");
   }
 
   /* The notebook's own file keeps the value of a short answer; the page needs the whole cell. */
@@ -120,53 +58,41 @@
     return name && !isStatement ? `${name[1]} = ${source}` : source;
   }
 
-  /* ---- an answer that is a letter ---------------------------------------------------------- */
-  /* Radio buttons that write the code of the answer, and read it: the code stays what is kept. */
-  class Choices {
-    constructor(answer) {
-      const { name, options, sure } = answer.cell.choose;
-      this.name = name;
-      this.radios = options.map(([letter]) => el("input", { type: "radio", value: letter,
-        name: `pf-choice-${answer.cell.item}`, onchange: () => answer.set(this.code()) }));
-      this.sure = sure && el("input", { type: "number", min: 0, max: 100, step: 1,
-        inputmode: "numeric", onchange: () => { this.tidySure(); answer.set(this.code()); } });
-      this.root = el("fieldset", { class: "pf-choices" },
-        el("legend", { class: "pf-sr" }, sure ? "Your prediction" : "Your answer"),
-        ...options.map(([letter, text], k) =>
-          el("label", {}, this.radios[k], el("span", {}, `(${letter}) ${text}`))),
-        sure ? el("label", { class: "pf-sure" }, "How sure are you? ", this.sure, " %") : null);
+  /* ---- predictions: locked by the lab itself; the page keeps what it says, and gives it back -- */
+  /* Predictions of a file or of another tab: a letter that exists, for what is still open. */
+  function adopt(found) {
+    for (const e of editors) {
+      const kept = found && typeof found === "object" && Object.hasOwn(found, e.cell.item)
+        ? found[e.cell.item] : null;
+      const options = e.cell.choose ? e.cell.choose.options : [];
+      if (!kept || predictions[e.cell.item] || !options.some(([k]) => k === kept.choice)) continue;
+      const sure = Number.isFinite(kept.sure) ? kept.sure : null;
+      predictions[e.cell.item] = { choice: kept.choice, sure, version: String(kept.version) };
+      python.told = false; // Python must hear of it before it runs the next cell
     }
+    showLocks();
+  }
 
-    tidySure() {
-      const value = this.sure.valueAsNumber;
-      this.sure.value = Number.isFinite(value) ? Math.min(100, Math.max(0, Math.round(value))) : "";
+  function showLocks() {
+    for (const e of editors) {
+      if (e.choices && predictions[e.cell.item]) e.lock(predictions[e.cell.item]);
     }
+  }
 
-    code() {
-      const radio = this.radios.find((r) => r.checked);
-      const letter = radio ? `"${radio.value}"` : "...";
-      const sure = this.sure && this.sure.value;
-      return `${this.name} = ` + (sure ? `(${letter}, ${sure})` : letter);
-    }
+  async function tellPython() {
+    python.told = true;
+    if (!Object.keys(predictions).length) return;
+    const text = JSON.stringify({ schema: 1, lab: lab.lab, answers: {}, predictions });
+    await python.ask({ do: "restore", lab: lab.lab, text });
+  }
 
-    /* Show what the code says; false if that is no letter of ours. */
-    read(text) {
-      const found = text.replace(/#.*$/gm, "").match(
-        /^\s*(\w+)\s*=\s*(?:\(\s*)?(?:["']([a-z])["']|\.\.\.)\s*(?:,\s*(\d+(?:\.\d+)?)\s*)?\)?\s*$/);
-      const mine = found && found[1] === this.name;
-      this.show(mine ? found[2] : null, mine ? found[3] : null);
-      return Boolean(mine);
-    }
-
-    show(letter, sure) {
-      for (const r of this.radios) r.checked = r.value === letter;
-      if (this.sure && document.activeElement !== this.sure) this.sure.value = sure ?? "";
-    }
-
-    lock({ choice, sure }) {
-      this.show(choice, sure);
-      this.root.disabled = true;
-    }
+  async function hearPython(answer) {
+    const text = await python.ask({ do: "progress", lab: lab.lab });
+    if (!text) return;
+    // A lock stays: a Python that was stopped and started anew may not know it yet.
+    predictions = { ...predictions, ...JSON.parse(text).predictions };
+    showLocks();
+    if (Object.keys(predictions).length) answer.isKept(store.writePredictions(predictions));
   }
 
   /* The list of options above the answer, if the controls repeat it word for word. */
@@ -177,69 +103,81 @@
       === options.map(([letter, text]) => plain(`(${letter}) ${text}`)).join("\n");
   }
 
+  const button = (label, onclick, more) => el("button", { type: "button", onclick, ...more }, label);
+
   /* ---- one answer cell -------------------------------------------------------------------- */
   class Answer {
     constructor(cell, check, node, checkNode) {
       this.cell = cell;
       this.check = check;
+      this.build();
+      const list = node.previousElementSibling;
+      if (cell.choose && repeated(list, cell.choose.options)) list.hidden = true;
+      node.replaceWith(this.root);
+      if (checkNode) checkNode.remove();
+      this.text = this.base = cell.source; // base: the text that the store and this tab agree on
+      const saved = store.read(cell.item);
+      if (saved && saved.version === cell.version) {
+        this.text = this.base = saved.source;
+        this.judged = saved.judged && { ...saved.judged, earlier: true };
+        if (saved.source !== cell.source) this.note.textContent = "Your saved answer.";
+      } else if (saved && store.write(cell.item + "/old", saved)) store.remove(cell.item);
+      this.makeEditor();
+      this.offerOld();
+      this.offerAside(store.read(cell.item + "/aside"));
+      if (this.choices) this.reflect();
+      this.showVerdict();
+    }
+
+    build() {
+      const { cell, check } = this;
       this.editorBox = el("div", { class: "pf-editor", tabindex: "-1" });
+      this.verdict = el("span", { class: "pf-verdict" });
       this.note = el("p", { class: "pf-note", role: "status", "aria-live": "polite" });
+      this.clock = el("span", { class: "pf-clock" }); // changes often: seen, not announced
+      this.warning = el("div", { class: "pf-row pf-warning", role: "status", hidden: true });
+      this.offer = el("div", { class: "pf-row pf-offer", hidden: true });
+      this.conflict = el("div", { class: "pf-row pf-conflict", role: "status", hidden: true });
       this.out = el("pre", { class: "pf-out", tabindex: "0", hidden: true,
         "aria-label": `Output of ${cell.item}` });
-      this.runButton = el("button", { type: "button", title: "Shift+Enter",
-        onclick: () => this.run(false) }, "Run");
-      this.checkButton = el("button", { type: "button", class: "pf-check", hidden: !check,
-        title: "Ctrl+Enter", onclick: () => this.run(true) }, "Check");
-      this.stopButton = el("button", { type: "button", class: "pf-stop", hidden: true,
-        onclick: () => this.stop("stopped by you") }, "Stop");
-      const reset = el("button", { type: "button", title: "Back to the empty answer",
-        onclick: () => {
-          this.set(cell.source);
-          this.note.textContent = "Reset." + (cell.choose ? "" : " Undo brings your answer back.");
-        } }, "Reset");
-      this.resetButton = reset;
-      this.offer = el("div", { class: "pf-row", hidden: true });
+      this.runButton = button("Run", () => this.run(false), { title: "Shift+Enter" });
+      this.checkButton = button("Check", () => this.run(true),
+        { class: "pf-check", hidden: !check, title: "Ctrl+Enter" });
+      this.stopButton = button("Stop", () => this.stop("Stopped by you."), { class: "pf-stop", hidden: true });
+      this.resetButton = button("Reset", () => {
+        this.editor.set(cell.source);
+        this.note.textContent = "Reset." + (cell.choose ? "" : " Undo brings your answer back.");
+      }, { title: "Back to the empty answer" });
       let code = this.editorBox;
       if (cell.choose) {
-        this.choices = new Choices(this);
+        this.choices = new PF.Choices(cell.item, cell.choose, (text) => this.editor.set(text));
         this.checkButton.textContent = cell.choose.sure ? "Lock prediction" : "Check";
         code = this.disclosure = el("details", { class: "pf-code", ontoggle: () => this.arrange() },
           el("summary", {}, "Show code"), this.editorBox);
       }
       this.root = el("div", { class: "pf-answer", role: "group", "aria-label": `Answer ${cell.item}` },
-        el("div", { class: "pf-row" }, el("span", { class: "pf-name" }, cell.item), this.note),
-        this.offer, this.choices ? this.choices.root : null, code,
-        this.buttons = el("div", { class: "pf-row" }, this.runButton, this.checkButton, reset,
-          this.stopButton),
+        el("div", { class: "pf-row" }, el("span", { class: "pf-name" }, cell.item), this.verdict,
+          this.note, this.clock),
+        this.offer, this.conflict, this.choices ? this.choices.root : null, code, this.warning,
+        this.buttons = el("div", { class: "pf-row" }, this.runButton, this.checkButton,
+          this.resetButton, this.stopButton),
         this.out);
-      const list = node.previousElementSibling;
-      if (cell.choose && repeated(list, cell.choose.options)) list.hidden = true;
-      node.replaceWith(this.root);
-      if (checkNode) checkNode.remove();
-      this.text = cell.source;
-      const saved = kept(cell.item);
-      if (saved && saved.version === cell.version) this.text = saved.source;
-      else if (saved) this.offerOld(saved);
-      this.makeEditor();
-      if (this.choices) this.reflect();
-      if (saved && saved.version === cell.version && saved.source !== cell.source) {
-        this.note.textContent = "Your saved answer.";
-      }
     }
 
     makeEditor() {
-      const options = {
-        doc: this.text, label: `Code of answer ${this.cell.item}; Escape leaves the editor`, dark: PF.isDark(this.root),
+      this.editor = window.PFEditor(this.editorBox, {
+        doc: this.text, label: `Code of answer ${this.cell.item}; Escape leaves the editor`,
+        dark: PF.isDark(this.root),
         onRun: () => this.run(false), onCheck: () => this.run(Boolean(this.check)),
         onLeave: () => this.runButton.focus(),
         onChange: (text) => {
           this.text = text;
           if (this.choices) this.reflect();
+          this.showVerdict();
           clearTimeout(this.saving);
-          this.saving = setTimeout(() => this.save(), 300);
+          this.saving = setTimeout(() => this.save(), limit.pause);
         },
-      };
-      this.editor = window.PFEditor(this.editorBox, options);
+      });
     }
 
     /* The controls follow the code; code that they cannot show is opened. */
@@ -258,129 +196,248 @@
     }
 
     lock(kept) {
+      if (this.locked) return;
       this.locked = kept;
       this.choices.lock(kept);
-      this.root.dataset.status = "predicted";
-      const sure = kept.sure == null ? "" : `, ${Math.round(kept.sure)} % sure`;
-      this.note.textContent = `Locked: (${kept.choice})${sure}.`;
       this.arrange();
+      this.showVerdict();
     }
 
-    save() {
+    /* The last verdict, for as long as it is about the text that stands here. */
+    showVerdict() {
+      const { judged, root } = this;
+      if (this.locked) {
+        const sure = this.locked.sure == null ? "" : `, ${Math.round(this.locked.sure)} % sure`;
+        this.verdict.textContent = `Locked: (${this.locked.choice})${sure}.`;
+        root.dataset.status = "predicted";
+        root.removeAttribute("data-stale");
+        return;
+      }
+      const edited = judged && judged.source !== this.text;
+      this.verdict.textContent = judged
+        ? (judged.earlier ? "earlier: " : "") + judged.told + (edited ? ", edited since" : "") : "";
+      root.dataset.status = judged ? judged.status : "";
+      root.toggleAttribute("data-stale", Boolean(edited));
+    }
+
+    /* ---- keeping ---- */
+    /* Only what was edited, or judged, is kept, and never over a text that this tab has not seen. */
+    save(judged = false) {
       clearTimeout(this.saving);
-      if (this.text === this.cell.source && !kept(this.cell.item)) return;
-      keep(this.cell.item, { source: this.text, version: this.cell.version });
+      if (this.text === this.base && !judged) return;
+      const record = { source: this.text, version: this.cell.version, judged: this.judged };
+      const there = this.stored();
+      if (this.other || (there !== this.base && there !== this.text)) {
+        this.isKept(store.write(this.cell.item + "/aside", record));
+        if (!this.other) this.offerOther(there);
+      } else if (this.isKept(store.write(this.cell.item, record))) this.base = this.text;
     }
 
-    offerOld(saved) {
+    /* The text in the store; the text agreed on if there is none. */
+    stored() {
+      const record = store.read(this.cell.item);
+      return record && record.version === this.cell.version ? record.source : this.base;
+    }
+
+    /* Another tab wrote: an unedited editor follows, an edited one keeps its own text. */
+    follow(record) {
+      if (!record || record.version !== this.cell.version) return;
+      if (record.source !== this.text && (this.text !== this.base || this.other)) {
+        this.offerOther(record.source);
+        return;
+      }
+      const news = record.source !== this.text;
+      this.base = record.source;
+      this.judged = record.judged && { ...record.judged, earlier: true };
+      if (news) {
+        this.editor.set(record.source);
+        this.note.textContent = "This is what you typed in another tab.";
+      }
+      this.showVerdict();
+    }
+
+    offerOther(source) {
+      const first = !this.other;
+      this.other = { source };
+      if (first) this.save();
+      this.choose("This answer was changed in another tab, too. Both versions are kept: yours stands here.",
+        source);
+    }
+
+    offerAside(record) {
+      if (!record || record.version !== this.cell.version) return;
+      if (record.source === this.text) store.remove(this.cell.item + "/aside");
+      else this.choose("Two tabs had changed this answer. The other version is kept, too.", record.source);
+    }
+
+    choose(told, source) {
+      const done = (take) => () => {
+        this.other = null;
+        this.base = this.stored();
+        store.remove(this.cell.item + "/aside");
+        this.conflict.hidden = true;
+        if (take) this.editor.set(source);
+        this.save();
+        this.editor.focus();
+      };
+      this.conflict.hidden = false;
+      this.conflict.replaceChildren(el("p", { class: "pf-note" }, told),
+        el("details", {}, el("summary", {}, "Show the other version"), el("pre", {}, source)),
+        button("Keep this one", done(false)), button("Take the other", done(true)));
+    }
+
+    offerOld() {
+      const old = store.read(this.cell.item + "/old");
+      if (!old || old.declined) return;
+      const done = (take) => () => {
+        store.write(this.cell.item + "/old", { ...old, declined: true });
+        this.offer.hidden = true;
+        if (take) this.editor.set(old.source);
+      };
       this.offer.hidden = false;
       this.offer.replaceChildren(
         el("span", { class: "pf-note" }, "The question has changed since you answered. Your earlier answer is kept."),
-        el("button", { type: "button", onclick: () => {
-          this.set(saved.source);
-          this.offer.hidden = true;
-        } }, "Use it"),
-        el("button", { type: "button", onclick: () => {
-          keep(this.cell.item + "/old", saved);
-          this.offer.hidden = true;
-          this.save();
-        } }, "Keep the new question"));
+        button("Use it", done(true)), button("Keep the new question", done(false)));
     }
 
-    get() { return this.editor.get(); }
+    /* Say once, beside the editor at hand, that the browser keeps nothing. */
+    isKept(worked) {
+      if (worked && refused) editors.forEach((e) => { e.warning.hidden = true; });
+      if (!worked && this.warning.hidden) {
+        editors.forEach((e) => { e.warning.hidden = true; });
+        this.warning.hidden = false;
+        this.warning.replaceChildren(
+          el("p", { class: "pf-note" }, "This browser does not let the page keep your answers "
+            + "(storage is refused or full). They stay until you leave: export them."),
+          button("Export answers", () => { this.note.textContent = exportAnswers(); }));
+      }
+      refused = !worked;
+      return worked;
+    }
 
-    set(text) { this.editor.set(text); }
-
+    /* ---- running ---- */
     async run(check) {
       if (busy) {
         this.note.textContent = "Another answer is still running.";
         return;
       }
+      const refusal = check && this.choices && !this.locked ? this.choices.refusal() : "";
+      if (refusal) {
+        this.note.textContent = refusal;
+        return;
+      }
       busy = this;
       this.save();
-      const index = check ? this.check.index : this.cell.index;
-      const cells = JSON.stringify(lab.cells.map((c) => {
-        const e = editors.find((x) => x.cell.index === c.index);
-        return { index: c.index, kind: c.kind, item: c.item ?? `cell ${c.index}`,
-          source: e ? e.get() : c.source };
-      }));
+      const source = this.text, began = performance.now();
       this.runButton.disabled = this.checkButton.disabled = true;
       this.stopButton.hidden = false;
-      const began = performance.now();
-      let booted = Boolean(python.worker);
-      const progress = (text) => { if (busy === this) this.note.textContent = text; };
-      python.onProgress(progress);
-      let limit = 0;
-      const clock = setInterval(() => {
-        if (!limit) return;
-        const left = Math.ceil((limit - performance.now()) / 1000);
-        if (left <= 0) this.stop(`stopped after ${LIMIT.seconds} s: does a loop never end?`);
-        else if (left < LIMIT.seconds - 1) this.note.textContent = `Running. It is stopped in ${left} s.`;
-      }, 250);
+      this.stopped = "";
       try {
-        await python.start();
-        if (!booted || !python.told) await restorePredictions();
+        await this.boot();
         this.note.textContent = "Running.";
-        limit = performance.now() + 1000 * LIMIT.seconds;
-        const report = JSON.parse(await python.ask({ do: "cell", cells, index }));
-        const seconds = ((performance.now() - began) / 1000).toFixed(1);
-        this.show(report, check);
-        this.note.textContent = (report.error ? "An error." : check ? "Checked." : "Ran.")
-          + ` ${seconds} s.` + (report.before.length ? ` Ran ${report.before.length} cell${report.before.length > 1 ? "s" : ""} above first.` : "");
-        await keepPredictions();
+        const report = await this.timed(this.ask(check ? this.check.index : this.cell.index));
+        this.show(report);
+        if (check) {
+          const told = report.headline.slice(this.cell.item.length + 2);
+          this.judged = { source, status: report.status, told: told || "could not be judged" };
+          this.save(true);
+        }
+        this.showVerdict();
+        await hearPython(this);
+        this.tell(report, check, (performance.now() - began) / 1000);
+        await this.giveBack();
       } catch (error) {
-        this.stopped = this.stopped || String(error.message || error);
-        this.show({ text: "", error: this.stopped, status: "" }, check);
-        this.note.textContent = this.stopped.slice(0, 160);
-        this.stopped = "";
+        python.told = false;
+        python.stop();
+        this.show({ text: "", error: this.stopped || this.breakdown(String(error.message || error)), note: "" });
+        this.note.textContent = this.out.textContent;
       } finally {
-        clearInterval(clock);
-        python.listeners.delete(progress);
+        this.clock.textContent = "";
         this.runButton.disabled = this.checkButton.disabled = false;
         this.stopButton.hidden = true;
         busy = null;
       }
     }
 
+    /* Python is loaded once a visit. How far it is, is shown; that it began, is said. */
+    async boot() {
+      const starts = !python.worker;
+      if (starts) this.note.textContent = "Starting Python.";
+      const progress = (text) => { this.clock.textContent = text; };
+      python.onProgress(progress);
+      try {
+        await python.start();
+      } catch (error) {
+        throw this.stopped ? error
+          : new Error(`Python could not be loaded (${error.message || error}). Try again: press the button once more.`);
+      } finally {
+        python.listeners.delete(progress);
+        this.clock.textContent = "";
+      }
+      if (starts || !python.told) await tellPython();
+    }
+
+    async ask(index) {
+      const cells = lab.cells.map((c) => {
+        const e = editors.find((x) => x.cell.index === c.index);
+        return { index: c.index, kind: c.kind, item: c.item ?? `cell ${c.index}`,
+          source: e ? e.text : c.source, stub: e ? c.source : "" };
+      });
+      return JSON.parse(await python.ask({ do: "cell", cells: JSON.stringify(cells), index }));
+    }
+
+    /* Wait, show the time that is left, and end a cell that takes too long. */
+    async timed(answer) {
+      const end = performance.now() + 1000 * limit.seconds;
+      const clock = setInterval(() => {
+        const left = Math.ceil((end - performance.now()) / 1000);
+        if (left <= 0) this.stop(`Stopped after ${limit.seconds} s: does a loop never end?`);
+        else if (left < limit.seconds - 1) this.clock.textContent = `stopped in ${left} s`;
+      }, 250);
+      try {
+        return await answer;
+      } finally {
+        clearInterval(clock);
+      }
+    }
+
     stop(reason) {
       this.stopped = reason;
-      python.told = false;
       python.stop();
     }
 
-    show(report, check) {
-      this.out.hidden = !(report.text || report.error);
-      this.out.replaceChildren(report.text);
-      if (report.error) {
-        this.out.append(el("span", { class: "pf-error" }, (report.text && !report.text.endsWith("\n") ? "\n" : "") + report.error));
-      }
-      if (check) this.root.dataset.status = report.status;
-      if (!report.text && !report.error && !check) this.out.hidden = true;
+    /* Python itself broke: recursion or memory beyond what WebAssembly bears. */
+    breakdown(told) {
+      if (/could not be loaded|was built without/.test(told)) return told;
+      const why = /stack|recursion|out of bounds/i.test(told) ? "The cell calls itself too deeply"
+        : /memory|alloc/i.test(told) ? "The cell used up the memory of the page"
+          : `Python broke down (${told.slice(0, 120)})`;
+      return `${why}. Python starts anew with your next run; your answers are kept.`;
     }
-  }
 
-  /* Predictions are locked by the lab itself; the page keeps what it says and gives it back. */
-  async function restorePredictions() {
-    python.told = true;
-    if (!Object.keys(predictions).length) return;
-    const text = JSON.stringify({ schema: 1, lab: lab.lab, answers: {}, predictions });
-    await python.ask({ do: "restore", lab: lab.lab, text });
-  }
+    /* Memory that Python once took it never gives back, so a Python that took much is ended. */
+    async giveBack() {
+      const bytes = await python.ask({ do: "memory" });
+      if (bytes < ROOM) return;
+      python.told = false;
+      python.stop();
+      this.note.textContent += ` It took ${Math.round(bytes / 1e6)} MB of memory, so Python starts anew with your next run.`;
+    }
 
-  async function keepPredictions() {
-    const text = await python.ask({ do: "progress", lab: lab.lab });
-    if (!text) return;
-    // A lock stays: a Python that was stopped and started anew may not know it yet.
-    predictions = { ...predictions, ...JSON.parse(text).predictions };
-    storePredictions();
-    showLocks();
-  }
+    tell({ error, before }, check, seconds) {
+      const above = before.filter((i) => i !== this.cell.index).length;
+      const what = error ? `An error: ${error.split("\n")[0].slice(0, 160).replace(/\.$/, "")}.`
+        : check ? `Checked: ${this.judged.told}.` : "Ran.";
+      this.note.textContent = `${what} ${seconds.toFixed(1)} s.`
+        + (above ? ` Ran ${above} cell${above > 1 ? "s" : ""} above first.` : "");
+    }
 
-  function keptPredictions() {
-    try {
-      return JSON.parse(localStorage.getItem(keyOf("*predictions"))).predictions;
-    } catch {
-      return null; // nothing kept, or storage refused: the lab starts without predictions
+    show({ text, error, note }) {
+      const gap = text && !text.endsWith("\n") ? "\n" : "";
+      this.out.replaceChildren(text,
+        error ? el("span", { class: "pf-error" }, gap + error) : "",
+        note && note !== error ? el("span", { class: "pf-hint" }, (error ? "\n" : gap) + note) : "");
+      this.out.hidden = !this.out.textContent;
     }
   }
 
@@ -389,6 +446,8 @@
     const data = document.getElementById("pf-lab");
     if (!data) return;
     lab = JSON.parse(data.textContent);
+    limit = { seconds: lab.seconds, pause: 300 }; // of a cell; ms without a key, to keep an answer
+    store = new PF.Store(lab.lab);
     python = new PF.Python("cells");
     await PF.loadScript("editor.js");
     const at = (cell) => document.querySelector(`.pf-cell-${cell.index}`);
@@ -397,27 +456,35 @@
     const note = el("span", { class: "pf-note", role: "status", "aria-live": "polite" });
     const file = el("input", { type: "file", accept: ".json,application/json", id: "pf-import",
       onchange: async () => {
-        if (file.files[0]) importAnswers(await file.files[0].text());
+        if (file.files[0]) note.textContent = importAnswers(await file.files[0].text());
         file.value = "";
       } });
     bar = el("div", { class: "pf-labbar", role: "group", "aria-label": "Your answers" },
       el("p", {}, "You can answer in this page. Python runs in your browser, nothing leaves it; "
-        + "your answers are kept in this browser."),
-      el("button", { type: "button", onclick: exportAnswers }, "Export answers"),
+        + `your answers are kept in this browser. A cell is stopped after ${lab.seconds} seconds.`),
+      button("Export answers", () => { note.textContent = exportAnswers(); }),
       el("label", { for: "pf-import" }, "Import answers", file), note);
-    bar.note = note;
     for (const cell of answers) {
       const check = lab.cells.find((c) => c.kind === "check" && c.item === cell.item);
       const node = at(cell);
       editors.push(new Answer(cell, check, node, check && at(check)));
     }
     editors[0].root.before(bar);
-    adopt(keptPredictions());
+    adopt(store.predictions());
     new MutationObserver(() => {
       for (const e of editors) e.editor.theme(PF.isDark(e.root));
     }).observe(document.documentElement, { attributes: true, attributeFilter: ["data-theme"] });
+    store.listen((name, text) => {
+      if (name === "*predictions") adopt(store.predictions());
+      const one = editors.find((e) => e.cell.item === name);
+      if (one) one.follow(PF.Store.record(text));
+    });
     addEventListener("pagehide", () => editors.forEach((e) => e.save()));
-    PF.lab = { editors, exportAnswers, importAnswers, python, limit: LIMIT };
+    addEventListener("pageshow", ({ persisted }) => {
+      if (persisted) editors.forEach((e) => e.follow(store.read(e.cell.item)));
+    });
+    // To look at, not to write: what stands in an editor comes from keys, a file or another tab.
+    PF.lab = Object.freeze({ limit, text: (item) => editors.find((e) => e.cell.item === item).text });
   }
   start();
 })((globalThis.PF = globalThis.PF || {}));

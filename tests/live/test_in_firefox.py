@@ -27,6 +27,7 @@ READOUTS = f"""(async () => {{
   const told = await PF.scenes.ask({{ do: "run", key: "t", operations: {OPERATIONS!r} }});
   return JSON.parse(told.report).readouts;
 }})()"""
+ARROW_DOWN = "\ue015"  # WebDriver's code of that key
 PATIENCE = 90  # seconds: a busy machine is slow, not wrong
 
 
@@ -72,6 +73,12 @@ class Firefox:
         while not self.evaluate(f"Boolean({script})"):
             assert time.monotonic() < end, f"waited in vain for {script}"
             time.sleep(0.1)
+
+    def press(self, *keys: str) -> None:
+        """Press and release keys, one after the other: real ones, as a keyboard sends them."""
+        held = [{"type": kind, "value": key} for key in keys for kind in ("keyDown", "keyUp")]
+        actions = [{"type": "key", "id": "keyboard", "actions": held}]
+        self.ask("input.performActions", context=self.tab, actions=actions)
 
     def outside(self, base: str) -> list[str]:
         """Requests that left the book."""
@@ -122,8 +129,17 @@ def test_explorables_and_answers_work(firefox, site, address, where):
     assert firefox.evaluate(READOUTS) == pytest.approx(here, rel=1e-9, abs=1e-9)
     firefox.goto(base + "lab.html")
     firefox.wait("window.PF && PF.lab")
-    firefox.evaluate("document.querySelector('[name=pf-choice-p1a][value=b]').click()")
-    assert firefox.evaluate("PF.lab.editors[0].get()") == 'p1a = "b"'
-    firefox.evaluate("PF.lab.editors[0].run(true)")
-    assert firefox.evaluate("PF.lab.editors[0].out.textContent").startswith("p1a: ")
+    firefox.evaluate("document.querySelector('[name=pf-choice-p1a][value=a]').focus()")
+    firefox.press(" ", ARROW_DOWN)
+    assert firefox.evaluate("PF.lab.text('p1a')") == 'p1a = "b"'
+    answer = "document.querySelector('[aria-label=\"Answer p5b\"]')"
+    firefox.evaluate(f"{answer}.querySelector('.cm-content').focus()")
+    firefox.press(*"a/b#?")
+    assert "a/b#?" in firefox.evaluate("PF.lab.text('p5b')")
+    firefox.evaluate(f"{answer}.querySelector('.pf-check').focus()")
+    firefox.press(" ")
+    firefox.wait(f"{answer}.querySelector('.pf-out').textContent.includes('SyntaxError in line 1')")
+    assert firefox.evaluate(f"{answer}.querySelector('.pf-verdict').textContent") == (
+        "could not be judged"
+    )
     assert not firefox.outside(base) and not firefox.errors()

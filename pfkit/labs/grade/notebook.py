@@ -13,8 +13,9 @@ from pfkit.labs import catalogue
 from pfkit.labs.grade.cells import (
     code_cells,
     lab_calls,
-    names_changed,
-    names_needed,
+    labs_imported,
+    names_bound,
+    names_read,
     surely_bound,
 )
 from pfkit.labs.grade.submission import Answers
@@ -48,7 +49,7 @@ def find(name: str, path: Path | None = None) -> Pristine:
     Parameters
     ----------
     name : str
-        A module of `pfkit.labs`, such as ``"lab3"`` or ``"resampling"``.
+        A module of `pfkit.labs`, such as ``"lab3"`` or ``"ch07"``.
     path : Path, optional
         The unanswered notebook; by default the one of this course that imports the module.
 
@@ -77,7 +78,8 @@ def _search(name: str) -> Path:
     for path in sorted((ROOT / "notebooks").rglob("*.ipynb")):
         if ".ipynb_checkpoints" in path.parts:
             continue
-        if name in catalogue.asked_in(json.loads(path.read_text(encoding="utf-8"))):
+        sources = (s for _, s in code_cells(json.loads(path.read_text(encoding="utf-8"))))
+        if any(name in labs_imported(s) for s in sources):
             return path
     raise NoSuchLab(f"no notebook below {ROOT / 'notebooks'} imports {name}: name it by --notebook")
 
@@ -107,10 +109,11 @@ def steps(pristine: Pristine, answers: Answers) -> list[dict[str, str]]:
 def _needed(every: list[dict[str, str]]) -> list[dict[str, str]]:
     kept, wanted = [], set[str]()
     for step in reversed(every):
+        reads, binds = names_read(step["source"]), names_bound(step["source"])
         if step["do"] in ("ours", "use"):
-            if not names_changed(step["source"]) & wanted:
+            if not binds & wanted:
                 continue
-        wanted -= surely_bound(step["source"])
-        wanted |= names_needed(step["source"])
+            wanted -= surely_bound(step["source"])
+        wanted |= reads
         kept.append(step)
     return kept[::-1]

@@ -1,0 +1,71 @@
+/* What a reader answered, kept in this browser: one record per answer, seen by all tabs.
+   A record is { source, version, judged }, judged the verdict on some source. Beside it, under
+   "item/aside", lies the text of a tab that found another text in its place, and under "item/old"
+   the answer to an earlier version of the question. */
+(function (PF) {
+  "use strict";
+
+  PF.Store = class {
+    constructor(lab) {
+      this.lab = lab;
+      this.place = `where-am-i/1/${lab}/`;
+    }
+
+    /* False if the browser refuses, or is full. */
+    write(name, value) {
+      try {
+        localStorage.setItem(this.place + name, JSON.stringify(value));
+        return true;
+      } catch {
+        return false;
+      }
+    }
+
+    /* A record, or null for anything else that may lie there. */
+    read(name) {
+      try {
+        return PF.Store.record(localStorage.getItem(this.place + name));
+      } catch {
+        return null;
+      }
+    }
+
+    remove(name) {
+      try {
+        localStorage.removeItem(this.place + name);
+      } catch { /* what may not be read may stay */ }
+    }
+
+    static record(text) {
+      try {
+        const value = JSON.parse(text);
+        return value && typeof value.source === "string" ? value : null;
+      } catch {
+        return null;
+      }
+    }
+
+    /* Predictions are kept in the form of the notebook's own file. */
+    predictions() {
+      try {
+        return JSON.parse(localStorage.getItem(this.place + "*predictions")).predictions || {};
+      } catch {
+        return {};
+      }
+    }
+
+    /* A lock stays: what another tab has locked meanwhile is not overwritten. */
+    writePredictions(predictions) {
+      const all = { ...predictions, ...this.predictions() };
+      return this.write("*predictions",
+        { schema: 1, lab: this.lab, answers: {}, predictions: all });
+    }
+
+    /* Tell of what other tabs write: hear(name, text), with text null for a removal. */
+    listen(hear) {
+      addEventListener("storage", ({ key, newValue }) => {
+        if (key && key.startsWith(this.place)) hear(key.slice(this.place.length), newValue);
+      });
+    }
+  };
+})((globalThis.PF = globalThis.PF || {}));
