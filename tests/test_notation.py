@@ -109,7 +109,7 @@ def symbols(formula):
         elif token == "d" and (follower.isalpha() or follower[1:] in GREEK):
             continue  # a differential: of dx, d\theta only the x, the theta
         elif token == "e" and tokens[i : i + 2] == ["^", "{"]:
-            continue  # the number e
+            name = "e^"  # the number: no row has it, it is written exp
         elif token.isalpha():
             name = token
         subscript, inner_found = "", []
@@ -123,7 +123,9 @@ def symbols(formula):
                 name += "*"
             elif kind == "_" and name:
                 subscript = plain(inner)
-            elif inner.strip() not in ("T", r"\top") and not re.fullmatch(r"\[\w\]", inner):
+            elif inner.strip() == "T" and kind == "^" and macro not in ("sum", "prod", "int"):
+                inner_found.append("^T")  # a transpose: no row has it, it is written \top
+            elif inner.strip() != r"\top" and not re.fullmatch(r"\[\w\]", inner):
                 inner_found += symbols(inner)
         if name and name not in FUNCTIONS:
             found.append(f"{name}_{subscript}" if subscript else name)
@@ -408,7 +410,8 @@ TABLE = r"""
             ["hat phi", "sigma_hit", "r*"],
         ),
         (r"\Delta t\,\sin(\omega\Delta\theta/2)", ["Delta t", "omega", "Delta theta"]),
-        (r"e^{-M V_h} + e^2 + A^T B^{-1}", ["M", "V_h", "e", "A", "B"]),
+        (r"e^{-M V_h} + e^2 + A^T B^{-1}", ["e^", "M", "V_h", "e", "A", "^T", "B"]),
+        (r"A^\top (B)^T + \sum_{t=1}^T x_t", ["A", "B", "^T", "t", "T", "x_t"]),
         (r"\mathrm{Var}_p[f] \sim \mathcal N(0, I)", ["Var_p", "f", "mathcal N", "I"]),
         (r"\begin{pmatrix} a \\ b \end{pmatrix}", ["a", "b"]),
         (r"\sum_{k=1}^{K} x^{n}", ["k", "K", "x", "n"]),

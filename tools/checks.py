@@ -57,7 +57,7 @@ def ruff(fix: bool = False) -> list[list[str]]:
 def stages(lax: bool = False) -> list[Stage]:
     """List all checks in order; lax: the last digits of stored outputs may differ."""
     nbval = ["--nbval-lax" if word == "--nbval" else word for word in NBVAL] if lax else NBVAL
-    tools = ("notebooks", "prose_numbers", "chapter_numbers")
+    tools = ("notebooks", "prose_numbers", "chapter_numbers", "options")
     tool = [[PYTHON, f"tools/{name}.py", "--check"] for name in tools]
     separate = ["tests/test_layers.py", "tests/test_stamps.py", "tests/book", "tests/live"]
     apart = [f"--ignore={name}" for name in separate]

@@ -3,7 +3,7 @@
     python tools/make_excerpts.py
 
 * ``pfkit/explore/mower.json``: Plaza 2, one column for each range, in whole numbers.
-* ``pfkit/labs/ch14_stretch.json``: ten seconds of the MRCLAM twin, odometry composed.
+* ``pfkit/labs/real_robot_stretch.json``: ten seconds of the MRCLAM twin, odometry composed.
 """
 
 from __future__ import annotations
@@ -17,7 +17,7 @@ import pfkit as pf
 
 ROOT = Path(__file__).resolve().parents[1]
 MOWER = ROOT / "pfkit" / "explore" / "mower.json"
-STRETCH = ROOT / "pfkit" / "labs" / "ch14_stretch.json"
+STRETCH = ROOT / "pfkit" / "labs" / "real_robot_stretch.json"
 
 
 def pack_mower(log: pf.Log) -> dict:

@@ -37,8 +37,10 @@ RULE = re.compile(
     r"=\s*(?:(?P<page>[\w/]+)#)?(?P<label>.+?)\s*(?:\[(?P<nth>\d+)\])?\s*(?:\*\s*(?P<times>[\d.]+))?\s*$"
 )
 FREE_UP_TO = 20
-# Text in which numbers mean something else: code, mathematics, links, names of things, dates.
+# Text in which numbers mean something else: options of a question, which tools/options.py writes,
+# code, mathematics, links, names of things, dates.
 NOT_PROSE = re.compile(
+    r"<!--options of \w+-->\n(?:\* [^\n]*(?:\n|\Z))*|"
     r"```.*?```|`[^`]*`|\$\$.*?\$\$|\$[^$]*\$|<!--.*?-->|\{[\w:-]+\}`[^`]*`|\]\([^)]*\)|<[^>]+>"
     r"|^:[\w-]+:.*?$|^#+ .*?$|^\([\w-]+\)=$|\bv?\d+\.\d+\.\d+\b|[A-Za-z]+[-_]?\d[\w.]*"
     r"|\b(?:1[89]|20)\d\d\b"

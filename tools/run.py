@@ -7,6 +7,7 @@
     notebooks   execute the notebooks whose code, package or data changed:  notebooks [FILE ...]
     numbers     compare the numbers in the prose with the cells:  numbers [--fill] [FILE ...]
     chapters    compare the numbers of chapters with their files:  chapters [--fill]
+    options     compare the options in the text with the labs:  options [--fill] [FILE ...]
     clean       remove what was built; clean --all also removes the environment and the caches
 
 The first call makes the environment .venv; nothing outside this folder is touched.
@@ -33,6 +34,7 @@ COMMANDS = {
     "notebooks": ("all", "notebooks", []),
     "numbers": ("all", "prose_numbers", []),
     "chapters": ("all", "chapter_numbers", []),
+    "options": ("all", "options", []),
 }
 
 

@@ -1,76 +1,113 @@
-r"""Lab questions that are checked at once and name the mistake.
+"""Lab questions that are checked at once and name the mistake.
 
 A student writes ``from pfkit.labs import lab3 as lab`` and answers. This page is for the person
 who writes questions. A question is a few declarations; nothing in it knows about notebooks.
 
-**A module of questions** (``pfkit/labs/ch07.py``) builds one `Lab` and publishes its verbs::
+**A module of questions** (``pfkit/labs/resampling.py``) binds questions and items, in the order in
+which they are asked, and publishes the verbs of its `Lab`::
 
-    from pfkit.labs import Choice, Code, Lab, Misconception, Numeric, Property, Question
+    from pfkit.labs import Choice, Lab, Numeric, Question, code
 
-    LAB = Lab("ch07", "Resampling variance", [Question("1", "Survival", (item, ...))])
+    HAND = Question("By hand")
+
+    ess = Numeric(...)
+
+    LAB = Lab.of(__name__, "Resampling variance")
     check, use, predict, answer, summary, save, load = LAB.verbs()
 
-**Every item** has ``id`` (the metadata ``answer: "<id>"`` of its answer cell, which holds a stub
-with ``...``, and a Python name in the notebook), ``title``, ``points`` and ``hints``: three, from
-a nudge to nearly the answer, shown one per check when no misconception is recognised.
-A `Misconception` is a wrong idea with its own three hints, and an ``example``, a wrong answer that
-must earn these hints and no others; `tests/labs/` runs them all.
+A long one is a folder, and ``Lab.of(__name__, title, *modules)`` collects the questions of its
+modules. There is no list to add it to: `catalogue` finds each module that publishes a `LAB`.
+
+**Every item** starts with a text. Its first line is the title; below it stand three hints, from a
+nudge to nearly the answer, shown one per check when no misconception is recognised. An indented
+line continues the one above. The name that an item is bound to is its id: the metadata
+``answer: "<id>"`` of its answer cell, which holds a stub with ``...``.
+
+**A wrong answer** stands under its hint. `item.wrong` takes what the answer does, to follow "Your
+answer", and three hints; the wrong answer follows, as a call or a decorated function. A name in
+front, ``sum-of-squares:``, names the misconception, else the wrong function's name is taken.
+`tests/labs/` runs them all: each must earn its own hint and no other. `item.refuses` is for answers
+that must not pass although no hint is theirs.
 
 N, numbers. A wrong value names its cause when it lies within ``tol`` of an example::
 
-    Numeric(id="n1", title="Effective sample size of (.5, .25, .25)", key=2.667, tol=0.005,
-            hints=("Square the weights first.", "Then sum.", "ESS = 1 / sum of w squared."),
-            misconceptions=(Misconception("no-inverse", "is the sum of squares itself",
-                ("ESS counts particles: it is at least 1.", "Invert.", "1/.375"), 0.375),))
+    ess = Numeric('''Effective sample size of (.5, .25, .25)
+        Square the weights first.
+        Then sum.
+        ESS = 1 / sum of w squared.''', 2.667, tol=0.005)
 
-C, code. Properties take the student's function and return True, or False, or a string that says
-what was found. ``fingerprint`` turns a function into numbers: a student whose fingerprint equals
-that of a misconception's example "behaves like" it, so most mutants need no predicate::
+    ess.wrong('''sum-of-squares: is the sum of squares itself
+        ESS counts particles: it is at least 1.
+        Invert.
+        1 / .375''')(0.375)
 
-    Code(id="c1", title="Normalise weights", reference=lambda w: w / w.sum(),
-         properties=(Property("they sum to one", lambda f: abs(f(np.ones(4)).sum() - 1) < 1e-9),),
-         fingerprint=lambda f: f(np.array([1.0, 2.0, 5.0])),
-         hints=(...), misconceptions=(Misconception("by-max", "divides by the largest weight",
-                                                    (...), lambda w: w / w.max()),))
+C, code. The reference is decorated with the item. Properties take the student's function and return
+True, or False, or a string that says what was found. ``fingerprint`` turns a function into numbers:
+a student whose fingerprint equals that of a wrong answer "behaves like" it, so most need no
+predicate; where that does not do, give one, ``wrong(..., when=lambda f: ...)``::
 
-M, choice. One sentence of feedback for each option, the right one included::
+    @code('''Normalise weights
+        What must they sum to?
+        Divide by something.
+        w / w.sum()''', fingerprint=lambda f: f(np.array([1.0, 2.0, 5.0])))
+    def normalise(w):
+        return w / w.sum()
 
-    Choice(id="m1", title="What is a particle?", key="b",
-           options={"a": "A measurement", "b": "A hypothesis with a weight"},
-           feedback={"a": "Measurements score particles.", "b": "Yes: one guess at the state."})
+    normalise.holds("they sum to one", lambda f: abs(f(np.ones(4)).sum() - 1) < 1e-9)
 
-P, prediction. Locked when given, ``"a"`` or ``("a", 70)``; it earns its points by being made::
+    @normalise.wrong('''divides by the largest weight
+        ...three hints...''')
+    def by_max(w):
+        return w / w.max()
 
-    Prediction(id="p1", title="What happens to the ESS?", key="a", options={...})
+M, choice: options instead of hints, the right one with a star, each with one sentence of feedback.
+P, prediction: options without feedback. Locked when given, ``"a"`` or ``("a", 70)``; it earns its
+points by being made::
 
-X, experiment. The student's function runs the experiment; ``measure(f, rng, runs)`` calls it and
-returns an array whose first axis is the runs; properties decide on that array. Declare claim,
-test, runs, false-fail probability (at most 1e-3, better 1e-4) and margin; `pfkit.labs.replay`
-verifies them. ``after`` names the prediction that must be locked first::
+    what = Choice('''What is a particle?
+        a  A measurement
+           = Measurements score particles.
+        b* A hypothesis with a weight
+           = Yes: one guess at the state.''')
 
-    Experiment(id="x1", title="Bias of the roulette wheel", after="p1", runs=200,
-               claim="the wheel is unbiased", test="|mean| < 4 standard errors",
-               measure=lambda f, rng, runs: [f(rng) for _ in range(runs)],
-               properties=(Property("mean within 4 SE of 0", lambda x: z_score(x) < 4),),
-               reference=reference, false_fail=1e-4, margin="4 SE, normal: 6e-5")
+    sign = Prediction('''What happens to the ESS?
+        a* it falls
+        b  it stays''')
 
-R, text. At most three sentences, kept for marking by hand; give a rubric and a model answer::
+X, experiment. The student's function runs the experiment, ``f(rng)`` once per run unless
+``measure(f, rng, runs)`` says otherwise; properties decide on the array of outcomes, whose first
+axis is the runs. Declare claim, test, runs, false-fail probability (at most 1e-3, by default 1e-4)
+and margin; `pfkit.labs.replay` verifies them on a ``pool`` of runs. ``after`` is the prediction
+that must be locked first::
 
-    Text(id="r1", title="Why is the ESS blind?", rubric=("names the loss of ancestors",),
-         model="Equal weights give ESS = M even if all particles are copies of one.")
+    @experiment('''Bias of the roulette wheel
+        ...three hints...''', after=sign, runs=200, claim="the wheel is unbiased",
+        test="|mean| < 4 standard errors", margin="4 SE, normal: 6e-5")
+    def bias_x(rng):
+        return ...
+
+    bias_x.holds("mean within 4 SE of 0", lambda x: abs(z_of_mean(x, 0)) < 4)
+
+R, text. At most three sentences, kept for marking by hand; the lines are the rubric::
+
+    why = Text('''Why is the ESS blind?
+        names the loss of ancestors''',
+        model="Equal weights give ESS = M even if all particles are copies of one.")
 
 In the notebook an item is three cells: the question (markdown), the answer cell, the check cell
-``lab.check("c1", c1)``; code adds ``c1 = lab.use("c1", c1)`` where later cells need it.
+``lab.check("normalise", normalise)``; code adds ``normalise = lab.use("normalise", normalise)``
+where later cells need it. Options are not typed again: write ``<!--options of sign-->`` where they
+belong, and ``python tools/run.py options --fill`` writes the list.
 A check prints, message first::
 
-    c1: partial 1/2
+    normalise: partial 1/2
       [ok] they sum to one
       [no] it does not change its input
     Your answer divides by the largest weight. Hint 1 of 3: ...
 
 Modules: `items` (declarations), `lab` (verbs), `guard` (survives student code), `verdict`,
 `progress` (JSON), `summary`, `calibration` (SVG), `controls` (ipywidgets), `replay` (false-fail
-rates), `mutants` (classic wrong implementations). All are NumPy and standard library only.
+rates), `catalogue` (which labs there are). All are NumPy and standard library only.
 """
 
 from pfkit.labs.items import (
@@ -83,6 +120,8 @@ from pfkit.labs.items import (
     Prediction,
     Property,
     Text,
+    code,
+    experiment,
 )
 from pfkit.labs.lab import Lab, LabError, Question
 from pfkit.labs.replay import replay
@@ -100,5 +139,7 @@ __all__ = [
     "Property",
     "Question",
     "Text",
+    "code",
+    "experiment",
     "replay",
 ]

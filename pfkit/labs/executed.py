@@ -100,7 +100,7 @@ def _made(tree: ast.Module, error: BaseException | None) -> set[str]:
             break
         if isinstance(statement, ast.Delete):
             names -= {t.id for t in statement.targets if isinstance(t, ast.Name)}
-        else:
+        elif not isinstance(statement, ast.AugAssign):
             top = symtable.symtable(ast.unparse(statement), "<cell>", "exec").get_symbols()
             names |= {n.get_name() for n in top if binds(n) and not n.is_referenced()}
     return names

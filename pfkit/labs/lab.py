@@ -14,9 +14,11 @@ With the environment variable ``PFKIT_LABS_STRICT=1`` a check that is not passed
 
 import inspect
 import os
+import sys
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 from pfkit.labs import controls, executed, progress
@@ -32,13 +34,20 @@ class LabError(AssertionError):
     """Raised by `Lab.check` under the strict switch only."""
 
 
-@dataclass(frozen=True)
+@dataclass(eq=False)
 class Question:
-    """A question of the lab, such as P3, with its items."""
+    """A question of the lab, such as P3; the items bound after it belong to it.
 
-    id: str
+    Parameters
+    ----------
+    title : str
+    id : str
+        By default the name that its module binds it to, in small letters.
+    """
+
     title: str
-    items: tuple[Item, ...]
+    id: str = ""
+    items: list[Item] = field(default_factory=list)
 
 
 class Lab:
@@ -50,6 +59,7 @@ class Lab:
         ``"lab3"``; also names the progress file.
     title : str
     questions : sequence of Question
+        `Lab.of` collects them from modules.
     """
 
     def __init__(self, name: str, title: str, questions: Sequence[Question]) -> None:
@@ -58,12 +68,37 @@ class Lab:
         for item in (i for q in self.questions for i in q.items):
             if item.id in self.items:
                 raise ValueError(f"{name} has two items called {item.id!r}: rename one")
-            if item.after and not isinstance(self.items.get(item.after), Prediction):
-                raise ValueError(f"{item.id!r} comes after {item.after!r}: no such prediction")
+            if item.after and item.after not in self.items.values():
+                raise ValueError(f"{item.id!r} comes after a prediction that stands below it")
             self.items[item.id] = item
         self.asks_how_sure = True  # the grader takes a bare letter, as older labs did
         self._executed = executed.watch()
         self.forget()
+
+    @classmethod
+    def of(cls, name: str, title: str, *modules: ModuleType) -> "Lab":
+        """Collect the questions and items that modules bind, in the order in which they do.
+
+        Parameters
+        ----------
+        name : str
+            ``__name__`` of the module that publishes the lab; its last part names the lab.
+        title : str
+        *modules
+            Where the questions stand; by default the module called ``name``.
+        """
+        questions: list[Question] = []
+        for module in modules or (sys.modules[name],):
+            for bound, value in list(vars(module).items()):
+                if isinstance(value, Question) and value not in questions:
+                    value.id = value.id or bound.lower()
+                    questions.append(value)
+                elif isinstance(value, Item) and not any(value in q.items for q in questions):
+                    value.id = value.id or bound
+                    if not questions:
+                        raise ValueError(f"{value.id!r} stands above the first question: add one")
+                    questions[-1].items.append(value)
+        return cls(name.rpartition(".")[2], title, questions)
 
     def forget(self) -> None:
         """Start afresh, as a new student."""
@@ -150,8 +185,8 @@ class Lab:
         judged, status = self._judge(item, answer)
         if status == "unanswered":
             return self._keep(Verdict(item.id, status, 0.0, item.points, "no answer yet"))
-        if item.after and item.after not in self.predictions:
-            told = f'predict first: lab.predict("{item.after}", ...)'
+        if item.after and item.after.id not in self.predictions:
+            told = f'predict first: lab.predict("{item.after.id}", ...)'
             return self._keep(Verdict(item.id, "locked", 0.0, item.points, told))
         self.answers[item.id] = {"source": _source(answer), "version": item.version}
         by_hand = isinstance(item, Text)
@@ -228,9 +263,10 @@ class Lab:
     def guesses(self) -> list[tuple[str, float | None, bool]]:
         """Predictions whose experiment was checked: (item, sure, right?)."""
         tried = {
-            i.after
+            i.after.id
             for i in self.items.values()
-            if isinstance(i, Experiment)
+            if i.after
+            and isinstance(i, Experiment)
             and i.id in self.verdicts
             and self.verdicts[i.id].status in ("passed", "partial", "wrong")
         }
@@ -266,7 +302,7 @@ class Lab:
 
     def load(self, path: str | Path | None = None) -> str:
         """Read them back. A file that cannot be read is set aside and named."""
-        data, told = progress.read(Path(path or f"{self.name}_answers.json"), self.name)
+        data, told = progress.read(Path(path or progress.file_of(self.name)), self.name)
         for name, kept in (data or {}).get("answers", {}).items():
             if name in self.items:
                 self.answers.setdefault(name, kept)

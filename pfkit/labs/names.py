@@ -1,5 +1,6 @@
 """The names that a cell binds and reads, from its source alone."""
 
+import ast
 import builtins
 import symtable
 
@@ -24,6 +25,11 @@ def bound_and_used(source: str) -> tuple[set[str], set[str]]:
     names = top.get_symbols()
     bound = {n.get_name() for n in names if binds(n)}
     used = {n.get_name() for n in names if n.is_referenced()}
+    used |= bound & {  # ``x += 1`` reads x, of which a table of symbols does not speak
+        n.target.id
+        for n in ast.walk(ast.parse(source))
+        if isinstance(n, ast.AugAssign) and isinstance(n.target, ast.Name)
+    }
     inner = list(top.get_children())
     while inner:
         table = inner.pop()

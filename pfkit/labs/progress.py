@@ -5,7 +5,8 @@
      "predictions": {"q7a": {"choice": "b", "sure": 70.0, "version": "..."}}}
 
 ``version`` is that of the question, so that an answer to an older question can be told apart.
-A file that cannot be read is renamed, never overwritten.
+A file that cannot be read is renamed, never overwritten. One that was kept when labs of chapters
+were called by numbers belongs to the lab of today's name, see `FORMER_NAMES`.
 """
 
 import json
@@ -15,6 +16,29 @@ from typing import Any
 
 SCHEMA = 1
 BIGGEST = 5_000_000  # bytes; a lab's answers are some ten thousand
+FORMER_NAMES = {
+    "bayes_filter": "ch01",
+    "global_localisation": "ch11",
+    "importance_weights": "ch05",
+    "motion": "ch03",
+    "outliers": "ch10",
+    "particle_filter": "ch06",
+    "prerequisites": "ch00",
+    "real_robot": "ch14",
+    "resampling": "ch07",
+    "sensing": "ch04",
+}
+
+
+def present_name(lab: str) -> str:
+    """The name that a lab has today, of the one that it had or has."""
+    return next((new for new, old in FORMER_NAMES.items() if old == lab), lab)
+
+
+def file_of(lab: str) -> Path:
+    """Where a lab is kept in this folder; the file of its former name if only that is there."""
+    now, before = (Path(f"{n}_answers.json") for n in (lab, FORMER_NAMES.get(lab, lab)))
+    return before if before.exists() and not now.exists() else now
 
 
 def empty(lab: str) -> dict[str, Any]:
@@ -27,7 +51,7 @@ def parse(text: str, lab: str) -> dict[str, Any]:
     if not isinstance(data, dict) or data.get("schema") != SCHEMA:
         found = data.get("schema") if isinstance(data, dict) else None
         raise ValueError(f"its schema is {found!r}, and this version reads {SCHEMA}")
-    if data.get("lab") != lab:
+    if present_name(str(data.get("lab"))) != lab:
         raise ValueError(f"it belongs to {str(data.get('lab'))[:40]!r}, not to {lab!r}")
     clean = empty(lab)
     for item, kept in _entries(data, "answers"):

@@ -85,7 +85,7 @@ def main(words: list[str] | None = None) -> int:
     parser = argparse.ArgumentParser(
         prog="python -m pfkit.labs.release", description="Write what students get of a lab."
     )
-    parser.add_argument("lab", help="such as lab3 or ch07")
+    parser.add_argument("lab", help="such as lab3 or resampling")
     parser.add_argument("folder", type=Path, help="is made if need be")
     parser.add_argument("--notebook", type=Path, help="if it is not this course's")
     parser.add_argument(

@@ -46,7 +46,7 @@ def replay(
     item: Experiment,
     answer: Any,
     decisions: int = 3_000,
-    pool: int = 3_000,
+    pool: int = 0,
     seed: int = 1,
     fresh: bool = False,
 ) -> Rate:
@@ -60,8 +60,8 @@ def replay(
     decisions : int
         How many checks to imitate.
     pool : int
-        How many independent runs to make; each decision draws ``item.runs`` of them without
-        replacement, so the pool should be several times larger.
+        How many independent runs to make, by default ``item.pool``; each decision draws
+        ``item.runs`` of them without replacement, so the pool should be several times larger.
     seed : int
         Differs from the seed of the check itself.
     fresh : bool
@@ -69,6 +69,7 @@ def replay(
     """
     rng = np.random.default_rng(seed)
     if not fresh:
+        pool = pool or item.pool
         size = max(item.runs, min(pool, SIDE_BY_SIDE))
         parts = [item.outcomes(answer, size, seed=seed + 1 + k) for k in range(-(-pool // size))]
         outcomes = np.concatenate(parts)

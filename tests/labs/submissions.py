@@ -6,9 +6,10 @@
 import copy
 import json
 import os
-import re
 import zipfile
 from pathlib import Path
+
+import solutions
 
 ROOT = Path(__file__).parents[2]
 LAB3 = json.loads((ROOT / "notebooks/labs/lab3_particle_filter.ipynb").read_text(encoding="utf-8"))
@@ -20,14 +21,9 @@ RIGHT = {
     "p2b": "def estimate(values, target, proposal):\n"
     "    w = target / proposal\n    return np.sum(w * values) / np.sum(w)",
 }
+SOLUTIONS = solutions.published("lab3")
 RIGHT_POINTS = 5.0
 STUB = 'p1a = ...  # a letter, such as "a"'
-
-
-def solutions():
-    text = (ROOT / "tests/solutions/lab3.py").read_text(encoding="utf-8")
-    parts = re.split(r"^# %% (\w+)\n", text, flags=re.MULTILINE)[1:]
-    return dict(zip(parts[::2], parts[1::2], strict=True))
 
 
 def notebook(answers, change=None):
@@ -151,7 +147,7 @@ def cases(precious, tag):
     return {
         # honest
         "right.ipynb": (answered(), "ok", ""),
-        "all right.ipynb": (notebook(solutions()), "ok", ""),
+        "all right.ipynb": (notebook(SOLUTIONS), "ok", ""),
         "wrong.ipynb": (notebook({"p1a": 'p1a = "a"', "p1b": "p1b = 1, 2, 3"}), "ok", ""),
         "Zoë O'Neil/lab 3 (final).ipynb": (answered(), "ok", ""),
         "renamed cells.ipynb": (answered(renamed), "ok", ""),
@@ -199,7 +195,7 @@ def cases(precious, tag):
         "unanswered.ipynb": (notebook({}), "missing", "nothing is answered"),
         "no answers.json": (export({}), "missing", "nothing is answered"),
         "deleted.ipynb": (answered(drop("p1b")), "missing", "no answer cell for p1b"),
-        "all deleted.ipynb": (answered(drop(*solutions())), "missing", "p1a"),
+        "all deleted.ipynb": (answered(drop(*SOLUTIONS)), "missing", "p1a"),
         "renamed answer.ipynb": (answered(rename_answer), "missing", "unknown answer cell 'p1z'"),
         # time
         "loop.ipynb": (before("while True: pass"), "timeout", "p1b: not done in 5 s"),
@@ -208,7 +204,7 @@ def cases(precious, tag):
             "while True:\n    try:\n        while True: pass\n    except BaseException: pass"),
             "timeout", "p1b: not done in 5 s"),
         "slow cells.ipynb": (notebook(
-            {i: s + "\nimport time; time.sleep(4.5)" for i, s in solutions().items()}),
+            {i: s + "\nimport time; time.sleep(4.5)" for i, s in SOLUTIONS.items()}),
             "timeout", "not done in 25 s"),
         # the process dies
         "os._exit.ipynb": (before("import os\nos._exit(0)"), "crashed", "code 0 in p1b"),

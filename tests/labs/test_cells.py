@@ -52,6 +52,7 @@ def test_names_that_a_cell_binds_and_needs():
 def test_what_is_local_to_a_function_is_needed_from_nowhere():
     source = "def f(rng):\n    log = g(rng)\n    return [t + k for t in log]"
     assert bound_and_used(source) == ({"f"}, {"g", "k"})
+    assert bound_and_used("def f(a):\n    a += 1\nb += 1") == ({"f", "b"}, {"b"})
     assert bound_and_used("class A(B):\n    n = 3\n    def m(self): return C")[1] == {"B", "C"}
 
 

@@ -3,12 +3,14 @@
 import json
 import os
 import random
+import shutil
 import signal
 import sys
 import time
 import types
 import warnings
 from fractions import Fraction
+from pathlib import Path
 
 import numpy as np
 import pytest
@@ -19,18 +21,23 @@ from pfkit.labs import (
     Experiment,
     Lab,
     LabError,
-    Misconception,
     Numeric,
     Prediction,
-    Property,
     Question,
     Text,
+    catalogue,
     controls,
+    progress,
     replay,
+    resampling,
 )
 from pfkit.labs.items import is_unanswered
+from pfkit.labs.items.base import written_lines
 
-HINTS = ("first", "second", "third")
+ASKED = """
+    first
+    second
+    third"""
 
 
 def normalise(w):
@@ -42,43 +49,50 @@ def by_max(w):
 
 
 def make_lab() -> Lab:
-    numeric = Numeric(
-        id="n", title="ESS", key=2.667, tol=0.005, hints=HINTS,
-        misconceptions=(Misconception("inverse", "forgets to invert", ("i1", "i2", "i3"), 0.375),),
-    )  # fmt: skip
-    code = Code(
-        id="c",
-        title="normalise",
-        points=2.0,
-        reference=normalise,
-        hints=HINTS,
-        properties=(
-            Property("sums to one", lambda f: abs(f(np.ones(4)).sum() - 1) < 1e-9),
-            Property("keeps the shape", lambda f: f(np.ones(4)).shape == (4,)),
-        ),
-        fingerprint=lambda f: f(np.array([1.0, 2.0, 5.0])),
-        misconceptions=(
-            Misconception("by-max", "divides by the largest", ("m1", "m2", "m3"), by_max),
-        ),
+    n = Numeric("ESS" + ASKED, 2.667, tol=0.005, id="n")
+    n.wrong("""inverse: forgets to invert
+        i1
+        i2
+        i3""")(0.375)
+    c = Code(
+        "normalise" + ASKED, id="c", points=2.0, fingerprint=lambda f: f(np.array([1.0, 2.0, 5.0]))
+    ).of(normalise)
+    c.holds("sums to one", lambda f: abs(f(np.ones(4)).sum() - 1) < 1e-9)
+    c.holds("keeps the shape", lambda f: f(np.ones(4)).shape == (4,))
+    c.wrong("""divides by the largest
+        m1
+        m2
+        m3""")(by_max)
+    m = Choice(
+        """particle
+        a  a measurement
+           = Measurements score particles.
+        b* a hypothesis
+           = Yes.""",
+        id="m",
     )
-    choice = Choice(
-        id="m", title="particle", key="b",
-        options={"a": "a measurement", "b": "a hypothesis"},
-        feedback={"a": "Measurements score particles.", "b": "Yes."},
-    )  # fmt: skip
-    guess = Prediction(id="p", title="sign", key="a", options={"a": "zero", "b": "one"})
-    coin = Experiment(
-        id="x", title="mean", after="p", runs=100, claim="mean is zero", test="|mean| < 5 SE",
-        measure=lambda f, rng, runs: [f(rng) for _ in range(runs)], hints=HINTS,
-        properties=(Property("near 0", lambda x: abs(x.mean()) < 5 / np.sqrt(len(x))),),
-        reference=lambda rng: rng.normal(), false_fail=1e-4, margin="5 SE",
-        misconceptions=(
-            Misconception("biased", "is biased", ("b1", "b2", "b3"),
-                          lambda rng: rng.normal() + 2, lambda x: x.mean() > 1),
-        ),
-    )  # fmt: skip
-    text = Text(id="r", title="why", rubric=("names copies",), model="Because all are copies.")
-    return Lab("demo", "Demo", [Question("1", "One", (numeric, code, choice, guess, coin, text))])
+    p = Prediction(
+        """sign
+        a* zero
+        b  one""",
+        id="p",
+    )
+    x = Experiment(
+        "mean" + ASKED, id="x", after=p, runs=100, claim="mean is zero", test="|mean| < 5 SE",
+        margin="5 SE",
+    ).of(lambda rng: rng.normal())  # fmt: skip
+    x.holds("near 0", lambda found: abs(found.mean()) < 5 / np.sqrt(len(found)))
+    x.wrong("""biased: is biased
+        b1
+        b2
+        b3""")(lambda rng: rng.normal() + 2, when=lambda found: found.mean() > 1)
+    r = Text(
+        """why
+        names copies""",
+        model="Because all are copies.",
+        id="r",
+    )
+    return Lab("demo", "Demo", [Question("One", "1", [n, c, m, p, x, r])])
 
 
 @pytest.fixture
@@ -223,8 +237,8 @@ def test_a_right_number_in_another_form(lab, given, status, told):
 
 
 def test_shares_and_order_are_told_apart_from_wrong_numbers():
-    item = Numeric(id="s", title="shares", key=(0.75, 0.316), tol=0.002, hints=HINTS)
-    lab = Lab("l", "L", [Question("1", "One", (item,))])
+    item = Numeric("shares" + ASKED, (0.75, 0.316), tol=0.002, id="s")
+    lab = Lab("l", "L", [Question("One", "1", [item])])
     assert "per cent" in lab.check("s", (75, 31.6)).hint
     assert "another order" in lab.check("s", (0.316, 0.75)).hint
     assert lab.check("s", (0.1, 0.2)).hint == "Hint 1 of 3: first", "no hint was spent before"
@@ -366,6 +380,28 @@ def test_progress_round_trip(lab, tmp_path):
     assert "it stays (b)" in str(other.predict("p", "a"))
 
 
+def test_a_file_of_a_former_name_is_read(tmp_path, monkeypatch):
+    """One that was saved when the lab was called ch07; what is saved now has the new name."""
+    monkeypatch.chdir(tmp_path)
+    kept = Path(__file__).with_name("former") / "ch07_answers.json"
+    shutil.copy(kept, tmp_path)
+    resampling.LAB.forget()
+    assert resampling.load() == "Loaded 4 answers from ch07_answers.json."
+    assert resampling.LAB.predictions["clock"]["choice"] == "c"
+    assert resampling.save() == "Saved 4 answers to resampling_answers.json."
+    old, new = (json.loads(p.read_text()) for p in (kept, tmp_path / "resampling_answers.json"))
+    assert new == old | {"lab": "resampling"}
+    for item, answer in new["answers"].items():
+        assert answer["version"] == resampling.LAB.items[item].version, "the same question"
+    resampling.LAB.forget()
+    assert resampling.load() == "Loaded 4 answers from resampling_answers.json.", "the newer one"
+    resampling.LAB.forget()
+
+
+def test_former_names_are_those_of_labs():
+    assert set(progress.FORMER_NAMES) < set(catalogue.names())
+
+
 DAMAGED = [
     b"",
     b"{",
@@ -402,14 +438,58 @@ def test_item_versions_follow_the_question():
 def test_declarations_are_checked():
     item = make_lab().items["n"]
     with pytest.raises(ValueError, match="two items"):
-        Lab("l", "L", [Question("1", "One", (item, item))])
-    with pytest.raises(ValueError, match="no such prediction"):
-        Lab("l", "L", [Question("1", "One", (make_lab().items["x"],))])
+        Lab("l", "L", [Question("One", "1", [item, item])])
+    with pytest.raises(ValueError, match="'x' comes after a prediction that stands below it"):
+        Lab("l", "L", [Question("One", "1", [make_lab().items["x"]])])
+    with pytest.raises(ValueError, match="'measurement' is no new option"):
+        Choice("""particle
+            measurement""")
+    with pytest.raises(ValueError, match="mark the right option with a star"):
+        Prediction("""sign
+            a  zero
+            b  one""")
+
+
+def module(name, **bound):
+    """A module of questions, as `Lab.of` finds it."""
+    found = types.ModuleType(name)
+    vars(found).update(bound)
+    return found
+
+
+def test_a_lab_is_collected_in_the_order_of_its_modules():
+    asked = {name: Numeric(name + ASKED, 1, tol=0.1) for name in ("mass", "speed", "late")}
+    early = module("early", FIRST=Question("One"), mass=asked["mass"])
+    more = module("more", mass=asked["mass"], speed=asked["speed"])  # imports what it builds on
+    late = module("late", SECOND=Question("Two"), late=asked["late"], FIRST=early.FIRST)
+    lab = Lab.of("pfkit.labs.demo", "Demo", early, more, late)
+    assert lab.name == "demo" and list(lab.items) == ["mass", "speed", "late"]
+    assert [(q.id, [i.id for i in q.items]) for q in lab.questions] == [
+        ("first", ["mass", "speed"]),
+        ("second", ["late"]),
+    ]
+    with pytest.raises(ValueError, match="'mass' stands above the first question"):
+        Lab.of("pfkit.labs.demo", "Demo", module("bare", mass=asked["mass"]))
+
+
+def test_a_wrong_answer_is_called_by_its_text_or_by_its_function(lab):
+    code, number = lab.items["c"].misconceptions[0], lab.items["n"].misconceptions[0]
+    assert (code.name, code.words) == ("by-max", "divides by the largest")
+    assert (number.name, number.words, number.example) == ("inverse", "forgets to invert", 0.375)
+    assert code.hints == ("m1", "m2", "m3") and lab.items["c"](np.ones(2)).tolist() == [0.5, 0.5]
+
+
+def test_a_long_line_is_continued_by_an_indented_one():
+    assert written_lines("""title
+        one line
+            goes on
+           = and here on a line of its own
+        two""") == ("title", "one line goes on\n= and here on a line of its own", "two")
 
 
 def test_replay_bounds_the_false_fail_rate(lab):
     item = lab.items["x"]
-    rate = replay(item, item.reference, decisions=3_000, pool=3_000)
+    rate = replay(item, item.reference)
     assert rate.fails == 0 and rate.bound == pytest.approx(1 - 0.05 ** (1 / 3000), rel=1e-6)
     wrong = replay(item, item.misconceptions[0].example, decisions=200, pool=1_000)
     assert wrong.share == 1 and wrong.misconceptions == {"biased": 200}

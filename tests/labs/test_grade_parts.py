@@ -5,6 +5,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import solutions
 import submissions
 
 from pfkit.labs import lab3
@@ -26,17 +27,27 @@ def pristine():
 # -- which cells run -----------------------------------------------------------------------------
 
 
-def test_names_read_and_bound():
+def test_names_changed():
     source = "import numpy as np\nx = [f(y) for y in z]\nx.append(1)\ndef g(a):\n    return a + b"
-    assert {"f", "z", "b", "x"} <= cells.names_read(source)
-    assert not {"a", "y"} & cells.names_read(source)
-    assert {"np", "x", "g"} <= cells.names_bound(source)
-    assert cells.names_bound("a.b[0].c = 1") == cells.names_bound("a.sort()") == {"a"}
-    assert cells.names_read("def (") == cells.names_bound("def (") == set()
+    assert cells.names_changed(source) == {"np", "x", "g"}
+    assert cells.names_changed("a.b[0].c = 1") == cells.names_changed("a.sort()") == {"a"}
+    assert cells.names_changed("for k in a:\n    b[k] = 1") == {"b", "k"}
+    assert cells.names_changed("plt.show()") == cells.names_changed("def (") == set()
+
+
+def test_names_surely_bound():
+    assert cells.surely_bound("a, b[c] = 1, 2\ndef f(): ...\nif d:\n    e = 1") == {"a", "f"}
+
+
+def test_names_needed():
+    assert cells.names_needed("x = f(y)\nz = x + 1\ndef g(a):\n    return a + b") == {"f", "y", "b"}
+    assert cells.names_needed("for i, j in pairs:\n    k = i\n    n += k") == {"pairs", "n"}
+    assert cells.names_needed("for x in x:\n    pass\nx") == {"x"}
+    assert cells.names_needed("w /= w.sum()") == {"w"} and cells.names_needed("def (") == set()
 
 
 def test_every_answer_runs_and_is_checked_and_figures_are_left_out(pristine):
-    run = steps(pristine, Answers(sources=submissions.solutions()))
+    run = steps(pristine, Answers(sources=solutions.published("lab3")))
     done = [s["item"] for s in run if s["do"] == "answer"]
     assert done == [s["item"] for s in run if s["do"] == "check"] == list(LAB.items)
     ours = [s["source"] for s in run if s["do"] == "ours"]
@@ -109,7 +120,7 @@ def test_reaching_for_the_checker_is_seen(source):
     assert suspicion.doubts("q", source, LAB, lab3)
 
 
-@pytest.mark.parametrize("source", [*INNOCENT, *submissions.solutions().values()])
+@pytest.mark.parametrize("source", [*INNOCENT, *solutions.published("lab3").values()])
 def test_ordinary_answers_are_not_suspected(source):
     assert suspicion.doubts("q", source, LAB, lab3) == []
 

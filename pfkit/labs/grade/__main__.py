@@ -23,7 +23,7 @@ def arguments(words: list[str] | None = None) -> argparse.Namespace:
         "answers run with your rights. The instructor guide says more.",
     )
     add = parser.add_argument
-    add("lab", help="such as lab3 or ch07")
+    add("lab", help="such as lab3 or resampling")
     add("folder", type=Path, help="where the submissions lie, at any depth")
     add("-o", "--output", type=Path, default=Path("grades.csv"), help="default: %(default)s")
     add("--jobs", type=int, default=1, help="submissions at a time (default: 1)")

@@ -4,8 +4,12 @@ A cell that is no Python reads and binds nothing.
 """
 
 import ast
-from types import CodeType
+from collections.abc import Iterator
 from typing import Any
+
+from pfkit.explore.cells import bound_and_used
+
+MODULES = {"np", "pf", "plt", "lab", "plotting"}  # a call of theirs changes no name of the cell
 
 
 def parsed(source: str) -> ast.Module:
@@ -49,50 +53,17 @@ def lab_calls(source: str) -> list[tuple[str, str, str]]:
     ]
 
 
-def bound_at_top(source: str) -> set[str]:
-    """Names that the statements of a cell bind, functions not looked into."""
-    names = set[str]()
+def names_changed(source: str) -> set[str]:
+    """Names a cell binds, or changes: ``x.y = 1``, ``x[0] = 1`` and ``x.sort()`` change x."""
+    found = bound_and_used(source)[0]
     for node in parsed(source).body:
-        if isinstance(node, ast.FunctionDef | ast.ClassDef):
-            names.add(node.name)
-        elif isinstance(node, ast.Assign | ast.AnnAssign):
-            stored = (n for n in ast.walk(node) if isinstance(n, ast.Name))
-            names |= {n.id for n in stored if isinstance(n.ctx, ast.Store)}
-        elif isinstance(node, ast.Import | ast.ImportFrom):
-            names |= {(a.asname or a.name).split(".")[0] for a in node.names}
-    return names
-
-
-def names_read(source: str) -> set[str]:
-    """Names a cell may look up outside itself: module level, and globals of its functions."""
-    try:
-        todo: list[CodeType] = [compile(source, "<cell>", "exec", dont_inherit=True)]
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
-        return set()
-    found = set[str]()
-    while todo:
-        code = todo.pop()
-        found |= set(code.co_names)
-        todo += [c for c in code.co_consts if isinstance(c, CodeType)]
-    return found
-
-
-def names_bound(source: str) -> set[str]:
-    """Names a cell binds at module level, or changes: ``x.y = 1`` and ``x.sort()`` change x."""
-    tree, found, modules = parsed(source), set[str](), set[str]()
-    for node in ast.walk(tree):
-        if isinstance(node, ast.Name) and isinstance(node.ctx, ast.Store | ast.Del):
-            found.add(node.id)
-        elif isinstance(node, ast.FunctionDef | ast.ClassDef):
-            found.add(node.name)
-        elif isinstance(node, ast.Import | ast.ImportFrom):
-            modules |= {(a.asname or a.name).split(".")[0] for a in node.names}
-        elif isinstance(node, ast.Attribute | ast.Subscript) and isinstance(node.ctx, ast.Store):
-            found.add(root(node))
-        elif isinstance(node, ast.Expr) and isinstance(node.value, ast.Call):
-            if isinstance(node.value.func, ast.Attribute):
-                found.add(root(node.value.func))
-    return found - {"np", "pf", "plt", "lab", "plotting"} | modules - {""}
+        for part in ast.walk(node):
+            if isinstance(part, ast.Attribute | ast.Subscript) and isinstance(part.ctx, ast.Store):
+                found.add(root(part))
+        call = node.value if isinstance(node, ast.Expr) else None
+        if isinstance(call, ast.Call) and isinstance(call.func, ast.Attribute):
+            found |= {root(call.func)} - MODULES
+    return found - {""}
 
 
 def root(node: ast.expr) -> str:
@@ -104,9 +75,30 @@ def root(node: ast.expr) -> str:
 
 def surely_bound(source: str) -> set[str]:
     """Names that are new after this cell, so that earlier bindings no longer matter."""
-    tree = parsed(source)
-    names = set[str]()
-    for node in tree.body:
-        if isinstance(node, ast.Assign):
-            names |= {t.id for t in node.targets if isinstance(t, ast.Name)}
-    return names
+    return set[str]().union(*map(_new_after, parsed(source).body))
+
+
+def _new_after(node: ast.stmt) -> set[str]:
+    if isinstance(node, ast.FunctionDef | ast.ClassDef):
+        return {node.name}
+    return _stored(*node.targets) if isinstance(node, ast.Assign) else set()
+
+
+def _stored(*targets: ast.expr) -> set[str]:
+    names = (part for t in targets for part in ast.walk(t) if isinstance(part, ast.Name))
+    return {name.id for name in names if isinstance(name.ctx, ast.Store)}
+
+
+def names_needed(source: str) -> set[str]:
+    """Names that a cell reads before it surely binds them."""
+    return set(_needed(parsed(source).body, set()))
+
+
+def _needed(body: list[ast.stmt], bound: set[str]) -> Iterator[str]:
+    for node in body:
+        if isinstance(node, ast.For):
+            yield from bound_and_used(ast.unparse(node.iter))[1] - bound
+            yield from _needed(node.body + node.orelse, bound | _stored(node.target))
+        else:
+            yield from bound_and_used(ast.unparse(node))[1] - bound
+        bound = bound | _new_after(node)

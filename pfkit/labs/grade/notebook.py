@@ -13,9 +13,8 @@ from pfkit.labs import catalogue
 from pfkit.labs.grade.cells import (
     code_cells,
     lab_calls,
-    labs_imported,
-    names_bound,
-    names_read,
+    names_changed,
+    names_needed,
     surely_bound,
 )
 from pfkit.labs.grade.submission import Answers
@@ -49,7 +48,7 @@ def find(name: str, path: Path | None = None) -> Pristine:
     Parameters
     ----------
     name : str
-        A module of `pfkit.labs`, such as ``"lab3"`` or ``"ch07"``.
+        A module of `pfkit.labs`, such as ``"lab3"`` or ``"resampling"``.
     path : Path, optional
         The unanswered notebook; by default the one of this course that imports the module.
 
@@ -78,8 +77,7 @@ def _search(name: str) -> Path:
     for path in sorted((ROOT / "notebooks").rglob("*.ipynb")):
         if ".ipynb_checkpoints" in path.parts:
             continue
-        sources = (s for _, s in code_cells(json.loads(path.read_text(encoding="utf-8"))))
-        if any(name in labs_imported(s) for s in sources):
+        if name in catalogue.asked_in(json.loads(path.read_text(encoding="utf-8"))):
             return path
     raise NoSuchLab(f"no notebook below {ROOT / 'notebooks'} imports {name}: name it by --notebook")
 
@@ -109,11 +107,10 @@ def steps(pristine: Pristine, answers: Answers) -> list[dict[str, str]]:
 def _needed(every: list[dict[str, str]]) -> list[dict[str, str]]:
     kept, wanted = [], set[str]()
     for step in reversed(every):
-        reads, binds = names_read(step["source"]), names_bound(step["source"])
         if step["do"] in ("ours", "use"):
-            if not binds & wanted:
+            if not names_changed(step["source"]) & wanted:
                 continue
-            wanted -= surely_bound(step["source"])
-        wanted |= reads
+        wanted -= surely_bound(step["source"])
+        wanted |= names_needed(step["source"])
         kept.append(step)
     return kept[::-1]

@@ -12,8 +12,9 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pfkit.labs import progress
-from pfkit.labs.grade.cells import bound_at_top, labs_imported, parsed
+from pfkit.explore.cells import bound_and_used
+from pfkit.labs import catalogue, progress
+from pfkit.labs.grade.cells import labs_imported, parsed
 from pfkit.labs.lab import Lab
 
 BIGGEST = 20_000_000  # bytes; a lab with all its figures has about one million
@@ -134,7 +135,7 @@ def _from_notebook(data: dict[str, Any], lab: Lab, stubs: dict[str, str]) -> Ans
         elif item:
             answers.notes.append(f"unknown answer cell {item[:40]!r} ignored")
         else:
-            answers.elsewhere |= bound_at_top(source)
+            answers.elsewhere |= bound_and_used(source)[0]
     for item in stubs:
         if item in found:
             answers.sources[item] = _joined(item, found[item], stubs[item], answers)
@@ -159,8 +160,8 @@ def _code(cells: Any) -> Iterable[tuple[str, str]]:
 
 
 def _same_lab(sources: list[str], lab: str) -> None:
-    named = set[str]().union(*(labs_imported(s) for s in sources))
-    others = sorted(n for n in named if n != lab and n[-1:].isdigit())
+    named = {progress.present_name(n) for s in sources for n in labs_imported(s)}
+    others = sorted(named.intersection(catalogue.names()))
     if lab not in named:
         raise Malformed(
             f"it is the notebook of {others[0] if others else 'something else'}, not of {lab}"
@@ -172,8 +173,8 @@ def _joined(item: str, cells: list[str], stub: str, answers: Answers) -> str:
     written = list(dict.fromkeys(c for c in cells if c.strip() and c.strip() != stub.strip()))
     if len(cells) > 1:
         answers.notes.append(f"{item}: {len(cells)} answer cells, {len(written)} different")
-    target = bound_at_top(stub)
-    complete = [c for c in written if target and target <= bound_at_top(c)]
+    target = bound_and_used(stub)[0]
+    complete = [c for c in written if target and target <= bound_and_used(c)[0]]
     if len(complete) > 1:
         answers.doubts.append(f"{item}: {len(complete)} answers compete; the last one was run")
     return "\n\n".join(written) if written else (cells[0] if len(cells) == 1 else stub)

@@ -16,8 +16,16 @@ that is `pfkit.labs.lab`. `base` is what all share, `numbers` and `words` hold t
 are values, `functions` those that are run.
 """
 
-from pfkit.labs.items.base import Item, Judgement, Misconception, Property, is_unanswered, tested
-from pfkit.labs.items.functions import Code, Experiment
+from pfkit.labs.items.base import (
+    Item,
+    Judgement,
+    Misconception,
+    Property,
+    Refused,
+    is_unanswered,
+    tested,
+)
+from pfkit.labs.items.functions import Code, Experiment, Function, code, experiment
 from pfkit.labs.items.numbers import Numeric
 from pfkit.labs.items.words import Choice, Prediction, Text
 
@@ -25,13 +33,17 @@ __all__ = [
     "Choice",
     "Code",
     "Experiment",
+    "Function",
     "Item",
     "Judgement",
     "Misconception",
     "Numeric",
     "Prediction",
     "Property",
+    "Refused",
     "Text",
+    "code",
+    "experiment",
     "is_unanswered",
     "tested",
 ]

@@ -2,14 +2,37 @@
 
 import dis
 import hashlib
+import inspect
+import re
 from collections.abc import Callable
-from dataclasses import dataclass
-from typing import Any, ClassVar
+from dataclasses import KW_ONLY, InitVar, dataclass, field
+from typing import Any, ClassVar, TypeVar
 
 from pfkit.labs.guard import describe
 from pfkit.labs.verdict import Line
 
-Ladder = tuple[str, str, str]
+Ladder = tuple[str, ...]
+T = TypeVar("T")
+
+
+def written_lines(text: str) -> Ladder:
+    """The lines of a text in triple quotes; an indented line continues the one before it.
+
+    One that starts with ``=`` continues it on a line of its own.
+    """
+    found: list[str] = []
+    for line in inspect.cleandoc(text).splitlines():
+        if line[:1].isspace() and found:
+            more = line.strip()
+            found[-1] += ("\n" if more.startswith("= ") else " ") + more
+        elif line:
+            found.append(line.rstrip())
+    return tuple(found)
+
+
+def name_of(function: Any) -> str:
+    """``off-by-one`` of a function called ``off_by_one`` or ``_off_by_one``."""
+    return getattr(function, "__name__", "").strip("_").replace("_", "-")
 
 
 @dataclass(frozen=True)
@@ -51,6 +74,24 @@ class Misconception:
 
 
 @dataclass(frozen=True)
+class Refused:
+    """An answer that must not pass, although no misconception need recognise it.
+
+    Parameters
+    ----------
+    says : str
+        What is wrong with it: "a constant at the right value".
+    example : object
+    named : str
+        The misconception it must earn; empty if none may.
+    """
+
+    says: str
+    example: Any
+    named: str = ""
+
+
+@dataclass(frozen=True)
 class Judgement:
     """Which properties hold, which misconception was recognised, and a sentence of feedback."""
 
@@ -64,17 +105,40 @@ class Judgement:
         return sum(x.ok for x in self.lines) / len(self.lines) if self.lines else 0.0
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(eq=False)
 class Item:
-    """What all items share."""
+    """What all items share.
+
+    Parameters
+    ----------
+    text : str
+        The first line is the title. What the others are depends on the type of item: hints, the
+        options of a choice, the rubric of a text.
+    id : str
+        By default the name that its module binds it to, see `Lab.of`.
+    points : float
+    after : Prediction, optional
+        What must be locked before this item is checked.
+    """
 
     letter: ClassVar[str] = ""
-    id: str
-    title: str
+    text: InitVar[str]
+    _: KW_ONLY
+    id: str = ""
     points: float = 1.0
-    hints: Ladder = ("", "", "")
-    misconceptions: tuple[Misconception, ...] = ()
-    after: str = ""  # the prediction that must be locked first
+    after: "Item | None" = None
+    title: str = field(init=False)
+    hints: Ladder = field(init=False, default=())
+    misconceptions: list[Misconception] = field(init=False, default_factory=list)
+    refused: list[Refused] = field(init=False, default_factory=list)
+
+    def __post_init__(self, text: str) -> None:
+        self.title, *rest = written_lines(text)
+        self.read(tuple(rest))
+
+    def read(self, lines: Ladder) -> None:
+        """Take the lines under the title: hints, unless a type of item has another use."""
+        self.hints = lines
 
     def judge(self, answer: Any) -> Judgement:
         raise NotImplementedError
@@ -83,13 +147,47 @@ class Item:
         """A right answer, which also lets an unanswered notebook carry on."""
         raise NotImplementedError
 
+    # -- declaring ---------------------------------------------------------------------------
+
+    def wrong(self, text: str, when: Callable[[Any], bool] | None = None) -> Callable[..., Any]:
+        """Declare a misconception; the wrong answer follows, as a decorated function or a call.
+
+        Parameters
+        ----------
+        text : str
+            What the wrong answer does, to follow "Your answer", and three hints, a line each.
+            A name may stand in front, ``sum-of-squares: is the sum of squares itself``; else
+            the wrong function's name is taken.
+        when : callable, optional
+            As in `Misconception`; may also stand beside the wrong answer.
+        """
+
+        def take(example: T, when: Callable[[Any], bool] | None = when) -> T:
+            says, *hints = written_lines(text)
+            named = re.match(r"([a-z0-9-]+): ", says)
+            name = named.group(1) if named else name_of(example)
+            words = says[named.end() :] if named else says
+            self.misconceptions.append(Misconception(name, words, tuple(hints), example, when))
+            return example
+
+        return take
+
+    def refuses(self, says: str, named: str = "") -> Callable[[T], T]:
+        """Declare an answer that must not pass, and which misconception it must earn, if any."""
+
+        def take(example: T) -> T:
+            self.refused.append(Refused(says, example, named))
+            return example
+
+        return take
+
     @property
     def version(self) -> str:
         """Changes when the question changes, so that stored answers can be told apart."""
-        told = (self.letter, self.id, self.title, *self._told())
-        return hashlib.sha256(repr(told).encode()).hexdigest()[:8]
+        identity = (self.letter, self.id, self.title, *self._identity())
+        return hashlib.sha256(repr(identity).encode()).hexdigest()[:8]
 
-    def _told(self) -> tuple:
+    def _identity(self) -> tuple:
         return ()
 
     def _recognise(self, evidence: Any) -> Misconception | None:

@@ -1,8 +1,8 @@
 """C and X: functions, run by the check."""
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
-from typing import Any, ClassVar
+from dataclasses import KW_ONLY, dataclass, field
+from typing import Any, ClassVar, Self
 
 import numpy as np
 
@@ -45,15 +45,57 @@ def _not_a_function(answer: Any) -> Judgement:
     return Judgement((line,), None, "Give the function itself, by its name and without brackets.")
 
 
-@dataclass(frozen=True, kw_only=True)
-class Code(Item):
+@dataclass(eq=False)
+class Function(Item):
+    """What C and X share: a reference that is decorated with the item, and properties.
+
+    An item called like a function runs its reference.
+    """
+
+    reference: Any = field(init=False, default=None)
+    properties: list[Property] = field(init=False, default_factory=list)
+
+    def of(self, reference: Callable[..., Any]) -> Self:
+        """Take the right answer; what `code` and `experiment` decorate ends here."""
+        self.reference = reference
+        return self
+
+    def __call__(self, *args: Any, **kwargs: Any) -> Any:
+        return self.reference(*args, **kwargs)
+
+    def holds(self, says: str, predicate: Callable[[Any], Any] | None = None) -> Any:
+        """Declare a property, as a decorator or with its predicate; see `Property`."""
+
+        def take(function: Callable[[Any], Any]) -> Callable[[Any], Any]:
+            self.properties.append(Property(says, function))
+            return function
+
+        return take if predicate is None else take(predicate)
+
+    def solution(self) -> Any:
+        return self.reference
+
+
+@dataclass(eq=False)
+class Code(Function):
     """C: a function that must have the stated properties on random inputs.
+
+        @code('''Normalise weights
+            What must they sum to?
+            Divide by something.
+            w / w.sum()''', fingerprint=lambda f: f(np.array([1.0, 2.0, 5.0])))
+        def normalise(w):
+            return w / w.sum()
+
+        normalise.holds("they sum to one", lambda f: abs(f(np.ones(4)).sum() - 1) < 1e-9)
+
+        @normalise.wrong('''divides by the largest weight
+            ...three hints...''')
+        def by_max(w):
+            return w / w.max()
 
     Parameters
     ----------
-    reference : callable
-        The right answer; lets the notebook carry on.
-    properties : tuple of Property
     fingerprint : callable, optional
         ``fingerprint(f)`` -> numbers that tell wrong implementations apart. A function whose
         fingerprint equals that of a misconception's example "behaves like" it.
@@ -62,16 +104,12 @@ class Code(Item):
     """
 
     letter: ClassVar[str] = "C"
-    reference: Any = None
-    properties: tuple[Property, ...] = ()
+    _: KW_ONLY
     fingerprint: Callable[[Any], Any] | None = None
     atol: float = 1e-9
-    _prints: dict = field(default_factory=dict, repr=False, compare=False)
+    _prints: dict[str, np.ndarray] = field(init=False, default_factory=dict, repr=False)
 
-    def solution(self) -> Any:
-        return self.reference
-
-    def _told(self) -> tuple:
+    def _identity(self) -> tuple:
         return tuple(p.says for p in self.properties)
 
     def judge(self, answer: Any) -> Judgement:
@@ -107,8 +145,8 @@ def each_run(f: Callable, rng: np.random.Generator, runs: int) -> list:
     return [f(child) for child in rng.spawn(runs)]
 
 
-@dataclass(frozen=True, kw_only=True)
-class Experiment(Item):
+@dataclass(eq=False)
+class Experiment(Function):
     """X: a claim about many runs of the student's experiment, tested with a declared error rate.
 
     Parameters
@@ -122,29 +160,27 @@ class Experiment(Item):
     measure : callable
         ``measure(f, rng, runs)`` -> outcomes of the runs, an array whose first axis is the runs.
         By default ``f(rng)`` is called once per run.
-    properties : tuple of Property
-        Decisions on the outcomes.
     false_fail : float
         Declared bound on the probability that a right experiment fails (at most 1e-3).
     margin : str
         Distance of the truth from the threshold, in standard errors.
+    pool : int
+        How many independent runs `pfkit.labs.replay` draws its decisions from: fewer where a run
+        is slow, and then the margin carries the claim.
     """
 
     letter: ClassVar[str] = "X"
+    _: KW_ONLY
     claim: str
     test: str
     runs: int
     measure: Callable[[Any, np.random.Generator, int], Any] = each_run
-    reference: Any = None
-    properties: tuple[Property, ...] = ()
     false_fail: float = 1e-4
     margin: str = ""
+    pool: int = 3_000
     seed: int = 2024
 
-    def solution(self) -> Any:
-        return self.reference
-
-    def _told(self) -> tuple:
+    def _identity(self) -> tuple:
         return (self.claim, self.test, self.runs)
 
     def outcomes(self, answer: Any, runs: int, seed: int | None = None) -> np.ndarray:
@@ -180,3 +216,13 @@ class Experiment(Item):
             f"Tested over {self.runs} runs, seed {self.seed}: {self.test}. "
             f"A right answer fails with a probability below {self.false_fail:g} ({self.margin})."
         )
+
+
+def code(text: str, **declared: Any) -> Callable[[Callable[..., Any]], Code]:
+    """Decorate the reference of a `Code` item; the arguments are those of `Code`."""
+    return Code(text, **declared).of
+
+
+def experiment(text: str, **declared: Any) -> Callable[[Callable[..., Any]], Experiment]:
+    """Decorate the reference of an `Experiment`; the arguments are those of `Experiment`."""
+    return Experiment(text, **declared).of

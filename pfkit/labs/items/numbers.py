@@ -1,6 +1,6 @@
 """N: numbers with a tolerance."""
 
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass
 from typing import Any, ClassVar
 
 import numpy as np
@@ -13,9 +13,19 @@ class NotNumbers(ValueError):
     """What the student gave instead of the numbers, and what to write: two sentences."""
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(eq=False)
 class Numeric(Item):
     """N: numbers with a tolerance; the usual wrong values are named.
+
+        ess = Numeric('''Effective sample size of (.5, .25, .25)
+            Square the weights first.
+            Then sum.
+            ESS = 1 / sum of w squared.''', 2.667, tol=0.005)
+
+        ess.wrong('''sum-of-squares: is the sum of squares itself
+            How many particles is that?
+            Turn the fraction over.
+            1 / 0.375.''')(0.375)
 
     A tuple, a list and an array are the same answer. Numbers that are right in another form
     (rounded too far, in per cent, in another order) are not accepted, and told apart from wrong
@@ -33,6 +43,7 @@ class Numeric(Item):
 
     letter: ClassVar[str] = "N"
     key: float | tuple[float, ...]
+    _: KW_ONLY
     tol: float
     unit: str = ""
     names: tuple[str, ...] = ()
@@ -40,7 +51,7 @@ class Numeric(Item):
     def solution(self) -> Any:
         return self.key
 
-    def _told(self) -> tuple:
+    def _identity(self) -> tuple:
         return (self.key, self.tol)
 
     def _numbers(self, answer: Any) -> np.ndarray:

@@ -1,11 +1,10 @@
 """M, P and R: letters and sentences."""
 
 import re
-from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar
 
-from pfkit.labs.items.base import Item, Judgement
+from pfkit.labs.items.base import Item, Judgement, Ladder
 from pfkit.labs.verdict import Line
 
 
@@ -15,20 +14,50 @@ def _letter(answer: Any) -> str:
     return found.group(1).lower() if found else ""
 
 
-@dataclass(frozen=True, kw_only=True)
-class Choice(Item):
-    """M: one letter of several; each distractor has one sentence of feedback."""
+@dataclass(eq=False)
+class Options(Item):
+    """What M and P share: options, a line each, the right one with a star at its letter.
+
+    An indented line that starts with ``=`` is the feedback on the option above it.
+    """
+
+    options: dict[str, str] = field(init=False, default_factory=dict)
+    feedback: dict[str, str] = field(init=False, default_factory=dict)
+    key: str = field(init=False, default="")
+
+    def read(self, lines: Ladder) -> None:
+        for line in lines:
+            option = re.fullmatch(r"([a-z])(\*?) +(.*?)(?:\n= (.*))?", line, re.DOTALL)
+            if option is None or option.group(1) in self.options:
+                raise ValueError(f"{self.title!r}: {line!r} is no new option such as 'a  its text'")
+            letter, star, text, feedback = option.groups()
+            self.options[letter] = text
+            if feedback:
+                self.feedback[letter] = feedback
+            if star:
+                self.key = letter
+        if not self.key:
+            raise ValueError(f"{self.title!r}: mark the right option with a star, 'b* its text'")
+
+    def _identity(self) -> tuple:
+        return (tuple(self.options.items()), self.key)
+
+
+@dataclass(eq=False)
+class Choice(Options):
+    """M: one letter of several; each option has one sentence of feedback.
+
+    what = Choice('''What is a particle?
+        a  A measurement
+           = Measurements score particles.
+        b* A hypothesis with a weight
+           = Yes: one guess at the state.''')
+    """
 
     letter: ClassVar[str] = "M"
-    options: Mapping[str, str]
-    key: str
-    feedback: Mapping[str, str]
 
     def solution(self) -> Any:
         return self.key
-
-    def _told(self) -> tuple:
-        return (tuple(self.options.items()), self.key)
 
     def judge(self, answer: Any) -> Judgement:
         given = _letter(answer)
@@ -40,19 +69,14 @@ class Choice(Item):
         return Judgement((line,), None, self.feedback.get(given, ""))
 
 
-@dataclass(frozen=True, kw_only=True)
-class Prediction(Item):
+@dataclass(eq=False)
+class Prediction(Options):
     """P: what will the experiment show? Locked when given; earns its points by being made."""
 
     letter: ClassVar[str] = "P"
-    options: Mapping[str, str]
-    key: str
 
     def solution(self) -> Any:
         return (self.key, 75)
-
-    def _told(self) -> tuple:
-        return (tuple(self.options.items()), self.key)
 
     def parse(self, answer: Any) -> tuple[str, float | None]:
         """``"a"`` or ``("a", 70)`` -> letter and sureness in per cent; raises ValueError."""
@@ -85,18 +109,24 @@ def _per_cent(sure: Any) -> float:
     return value
 
 
-@dataclass(frozen=True, kw_only=True)
+@dataclass(eq=False)
 class Text(Item):
-    """R: at most three sentences, kept for marking by hand against a rubric."""
+    """R: at most three sentences, kept for marking by hand.
+
+    The lines under its title are the rubric; ``model`` is a model answer.
+    """
 
     letter: ClassVar[str] = "R"
-    rubric: tuple[str, ...]
-    model: str  # a model answer
+    _: KW_ONLY
+    model: str
+
+    def read(self, lines: Ladder) -> None:
+        self.rubric = lines
 
     def solution(self) -> Any:
         return self.model
 
-    def _told(self) -> tuple:
+    def _identity(self) -> tuple:
         return self.rubric
 
     def judge(self, answer: Any) -> Judgement:

@@ -21,11 +21,11 @@ from pfkit.labs.lab3 import (
 )
 from pfkit.labs.target import anywhere, around, target_log, track
 
-PARTS = (
+LAB = Lab.of(
+    __name__, "Lab 3: the particle filter",
     weights, deprivation, summaries, densities, sample_variance, particle_count,
     motion_models, likelihood, resamplers, survival, noise, ablations,
 )  # fmt: skip
-LAB = Lab("lab3", "Lab 3: the particle filter", [q for part in PARTS for q in part.QUESTIONS])
 check, use, predict, answer, summary, save, load = LAB.verbs()
 film, line = deprivation.FILM, motion_models.LINE
 

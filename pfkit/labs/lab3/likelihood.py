@@ -4,29 +4,10 @@ from __future__ import annotations
 
 import numpy as np
 
-from pfkit.labs.items import (
-    Choice,
-    Code,
-    Property,
-)
-from pfkit.labs.lab import Question
-from pfkit.labs.mutants import MUTANTS
+from pfkit.labs import Choice, Question, code
 from pfkit.labs.statistics import rng_of
 
-MUTANT = MUTANTS["lab3"]
-
-
-def log_likelihood(z, state, sigma):
-    """log N(z; (x, y), sigma^2 I) at every state: two dimensions, full constant."""
-    d2 = (z[0] - state[0]) ** 2 + (z[1] - state[1]) ** 2
-    return -d2 / (2 * sigma**2) - np.log(2 * np.pi * sigma**2)
-
-
-def weights_of(log_l):
-    """Normalised weights from log-likelihoods, equal weights before."""
-    w = np.exp(log_l - np.max(log_l))
-    return w / w.sum()
-
+Q3 = Question("The constant in the likelihood")
 
 _LOGS = np.array([-1.0, -3.0, -2.5, -0.2])
 
@@ -42,120 +23,211 @@ def _integral(f, sigma):
     return float(np.exp(f(np.zeros(2), grid, sigma)).sum() * 0.25)
 
 
-Q3 = Question(
-    "q3",
-    "The constant in the likelihood",
-    (
-        Choice(
-            id="q3a",
-            title="Leave the constant out: what happens to the normalised weights?",
-            key="a",
-            options={
-                "a": "Nothing",
-                "b": "They become larger",
-                "c": "They no longer sum to one",
-                "d": "Particles far away gain weight",
-            },
-            feedback={
-                "a": "Yes: every particle has the same factor, and normalising divides it out.",
-                "b": "All likelihoods do, by the same factor; then the weights are normalised.",
-                "c": "They are divided by their sum, whatever it is.",
-                "d": "A common factor changes no ratio between particles.",
-            },
-        ),
-        Choice(
-            id="q3b",
-            title="Where does it matter, then?",
-            key="d",
-            options={
-                "a": "Nowhere in a particle filter",
-                "b": "In the mean of the particles",
-                "c": "In the effective sample size",
-                "d": "In a gate on the likelihood, in a mixture with outliers, in the evidence",
-            },
-            feedback={
-                "a": "It cancels in the weights; some steps use likelihoods not yet normalised.",
-                "b": "The mean uses normalised weights.",
-                "c": "The ESS uses normalised weights.",
-                "d": "Yes: there likelihoods are compared with a number, or with each other.",
-            },
-        ),
-        Code(
-            id="q3c",
-            title="Log-likelihood of a position, with its constant",
-            points=3,
-            reference=log_likelihood,
-            hints=(
-                "Write down the density of a Gaussian in two dimensions, then take its logarithm.",
-                "The logarithm of exp(a) is a: no exp is needed.",
-                "-(dx^2 + dy^2)/(2 sigma^2) - log(2 pi sigma^2).",
-            ),
-            properties=(
-                Property(
-                    "one number per particle",
-                    lambda f: np.shape(f(*_fix(0))) == (12,),
-                ),
-                Property(
-                    "a distance of one sigma costs 1/2",
-                    lambda f: np.isclose(
-                        f(np.zeros(2), np.zeros((2, 1)), 3.0)[0]
-                        - f(np.array([3.0, 0]), np.zeros((2, 1)), 3.0)[0],
-                        0.5,
-                    ),
-                ),
-                Property(
-                    "x and y errors add up: (3, 4) px costs as much as (5, 0)",
-                    lambda f: np.isclose(
-                        f(np.array([3.0, 4]), np.zeros((2, 1)), 2.0)[0],
-                        f(np.array([5.0, 0]), np.zeros((2, 1)), 2.0)[0],
-                    ),
-                ),
-                Property(
-                    "the density integrates to one",
-                    lambda f: (
-                        abs(_integral(f, 3.0) - 1) < 1e-3 or f"it gives {_integral(f, 3.0):.3g}"
-                    ),
-                ),
-                Property(
-                    "finite and ordered at 5,000 and 10,000 sigma",
-                    lambda f: bool(
-                        -np.inf
-                        < f(np.array([1e4, 0.0]), np.zeros((2, 1)), 1.0)[0]
-                        < f(np.array([5e3, 0.0]), np.zeros((2, 1)), 1.0)[0]
-                    ),
-                ),
-            ),
-            fingerprint=lambda f: [*f(*_fix(1)), *f(np.array([60.0, 0]), np.zeros((2, 1)), 1.0)],
-            misconceptions=MUTANT["q3c"],
-        ),
-        Code(
-            id="q3d",
-            title="Weights from log-likelihoods",
-            reference=weights_of,
-            hints=(
-                "A constant added to all logarithms cancels when you normalise. Add a good one.",
-                "Subtract the largest logarithm before exp: then the best particle has exp(0) = 1.",
-                "w = np.exp(log_l - log_l.max()); w / w.sum().",
-            ),
-            properties=(
-                Property(
-                    "they sum to one, in the right proportions",
-                    lambda f: np.allclose(f(_LOGS), np.exp(_LOGS) / np.exp(_LOGS).sum()),
-                ),
-                Property(
-                    "a constant added to all changes nothing: the factor cancels",
-                    lambda f: np.allclose(f(_LOGS - np.log(2 * np.pi * 9.0)), f(_LOGS)),
-                ),
-                Property(
-                    "20,000 below zero they are still right",
-                    lambda f: np.allclose(f(_LOGS - 2e4), weights_of(_LOGS)),
-                ),
-            ),
-            fingerprint=lambda f: [*f(_LOGS), *np.nan_to_num(f(_LOGS - 2e4), nan=-1.0)],
-            misconceptions=MUTANT["q3d"],
-        ),
+q3a = Choice("""Leave the constant out: what happens to the normalised weights?
+    a* Nothing
+       = Yes: every particle has the same factor, and normalising divides it out.
+    b  They become larger
+       = All likelihoods do, by the same factor; then the weights are normalised.
+    c  They no longer sum to one
+       = They are divided by their sum, whatever it is.
+    d  Particles far away gain weight
+       = A common factor changes no ratio between particles.""")
+
+q3b = Choice("""Where does it matter, then?
+    a  Nowhere in a particle filter
+       = It cancels in the weights; some steps use likelihoods not yet normalised.
+    b  In the mean of the particles
+       = The mean uses normalised weights.
+    c  In the effective sample size
+       = The ESS uses normalised weights.
+    d* In a gate on the likelihood, in a mixture with outliers, in the evidence
+       = Yes: there likelihoods are compared with a number, or with each other.""")
+
+
+@code(
+    """Log-likelihood of a position, with its constant
+    Write down the density of a Gaussian in two dimensions, then take its logarithm.
+    The logarithm of exp(a) is a: no exp is needed.
+    -(dx^2 + dy^2)/(2 sigma^2) - log(2 pi sigma^2).""",
+    id="q3c",
+    points=3,
+    fingerprint=lambda f: [*f(*_fix(1)), *f(np.array([60.0, 0]), np.zeros((2, 1)), 1.0)],
+)
+def log_likelihood(z, state, sigma):
+    """log N(z; (x, y), sigma^2 I) at every state: two dimensions, full constant."""
+    d2 = (z[0] - state[0]) ** 2 + (z[1] - state[1]) ** 2
+    return -d2 / (2 * sigma**2) - np.log(2 * np.pi * sigma**2)
+
+
+log_likelihood.holds("one number per particle", lambda f: np.shape(f(*_fix(0))) == (12,))
+log_likelihood.holds(
+    "a distance of one sigma costs 1/2",
+    lambda f: np.isclose(
+        f(np.zeros(2), np.zeros((2, 1)), 3.0)[0] - f(np.array([3.0, 0]), np.zeros((2, 1)), 3.0)[0],
+        0.5,
+    ),
+)
+log_likelihood.holds(
+    "x and y errors add up: (3, 4) px costs as much as (5, 0)",
+    lambda f: np.isclose(
+        f(np.array([3.0, 4]), np.zeros((2, 1)), 2.0)[0],
+        f(np.array([5.0, 0]), np.zeros((2, 1)), 2.0)[0],
+    ),
+)
+log_likelihood.holds(
+    "the density integrates to one",
+    lambda f: abs(_integral(f, 3.0) - 1) < 1e-3 or f"it gives {_integral(f, 3.0):.3g}",
+)
+log_likelihood.holds(
+    "finite and ordered at 5,000 and 10,000 sigma",
+    lambda f: bool(
+        -np.inf
+        < f(np.array([1e4, 0.0]), np.zeros((2, 1)), 1.0)[0]
+        < f(np.array([5e3, 0.0]), np.zeros((2, 1)), 1.0)[0]
     ),
 )
 
 
-QUESTIONS = (Q3,)
+def _d2(z, state):
+    return (z[0] - state[0]) ** 2, (z[1] - state[1]) ** 2
+
+
+@log_likelihood.wrong("""lacks the 1/2 in the exponent
+    Integrate your density over the image. You get one half.
+    Compare your exponent with the one in the question, factor by factor.
+    Exponent: -(dx^2 + dy^2) / (2 sigma^2).""")
+def no_half(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return -(dx + dy) / sigma**2 - np.log(2 * np.pi * sigma**2)
+
+
+@log_likelihood.wrong("""returns the density itself, not its logarithm
+    Far away your value is 0. What should a logarithm be there?
+    The question asks for log p, which is negative and large far away.
+    Take the logarithm on paper: -(dx^2 + dy^2)/(2 sigma^2) - log(2 pi sigma^2).""")
+def no_logarithm(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return np.exp(-(dx + dy) / (2 * sigma**2)) / (2 * np.pi * sigma**2)
+
+
+@log_likelihood.wrong("""behaves like an average of the two likelihoods, where both must hold at
+         once
+    Put a particle right in x and 100 px wrong in y. Is it half right?
+    Independent measurements multiply: p(zx, zy | x) = p(zx | x) p(zy | x).
+    In logarithms: add the two terms, with no division by two.""")
+def averaged(z, state, sigma):
+    dx, dy = _d2(z, state)
+    one = 1 / (np.sqrt(2 * np.pi) * sigma)
+    return np.log((one * np.exp(-dx / 2 / sigma**2) + one * np.exp(-dy / 2 / sigma**2)) / 2)
+
+
+@log_likelihood.wrong("""uses sigma where the density has sigma squared
+    Check the units: px^2 in the exponent must be divided by px^2.
+    sigma is a standard deviation; the Gaussian divides by its square.
+    Exponent: -(dx^2 + dy^2) / (2 sigma^2).""")
+def sigma_for_variance(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return -(dx + dy) / (2 * sigma) - np.log(2 * np.pi * sigma)
+
+
+@log_likelihood.wrong("""has the normalising constant of one dimension
+    Integrate your density over the image. Do you get 1?
+    Two independent components bring their constant twice.
+    The constant is 1/(2 pi sigma^2).""")
+def constant_1d(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return -(dx + dy) / (2 * sigma**2) - np.log(np.sqrt(2 * np.pi) * sigma)
+
+
+@log_likelihood.wrong("""leaves the normalising constant out
+    It cancels in the weights. This item asks for the density itself.
+    Integrate your density over the image. Do you get 1?
+    Subtract log(2 pi sigma^2).""")
+def no_constant(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return -(dx + dy) / (2 * sigma**2)
+
+
+@log_likelihood.wrong("""takes the logarithm of an exponential, which is 0 far away, so you get
+         -inf
+    What is np.exp(-1000)? And its logarithm?
+    Write the logarithm of the formula down, and let exp and log cancel on paper.
+    log p = -(dx^2 + dy^2)/(2 sigma^2) - log(2 pi sigma^2), without any exp.""")
+def underflow(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return np.log(np.exp(-(dx + dy) / (2 * sigma**2)) / (2 * np.pi * sigma**2))
+
+
+@log_likelihood.wrong("""hides the underflow behind a small added number
+    Two particles at 50 and at 5,000 sigma: does yours still prefer the nearer one?
+    The floor makes all far particles equal, and the filter then resamples at random.
+    Stay with logarithms; then no floor is needed.""")
+def floor(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return np.log(np.exp(-(dx + dy) / (2 * sigma**2)) / (2 * np.pi * sigma**2) + 1e-300)
+
+
+@code(
+    """Weights from log-likelihoods
+    A constant added to all logarithms cancels when you normalise. Add a good one.
+    Subtract the largest logarithm before exp: then the best particle has exp(0) = 1.
+    w = np.exp(log_l - log_l.max()); w / w.sum().""",
+    id="q3d",
+    fingerprint=lambda f: [*f(_LOGS), *np.nan_to_num(f(_LOGS - 2e4), nan=-1.0)],
+)
+def weights_of(log_l):
+    """Normalised weights from log-likelihoods, equal weights before."""
+    w = np.exp(log_l - np.max(log_l))
+    return w / w.sum()
+
+
+weights_of.holds(
+    "they sum to one, in the right proportions",
+    lambda f: np.allclose(f(_LOGS), np.exp(_LOGS) / np.exp(_LOGS).sum()),
+)
+weights_of.holds(
+    "a constant added to all changes nothing: the factor cancels",
+    lambda f: np.allclose(f(_LOGS - np.log(2 * np.pi * 9.0)), f(_LOGS)),
+)
+weights_of.holds(
+    "20,000 below zero they are still right",
+    lambda f: np.allclose(f(_LOGS - 2e4), weights_of(_LOGS)),
+)
+
+
+@weights_of.wrong("""divides 0 by 0 where all likelihoods underflow
+    What is np.exp(-20000)? And the sum of such numbers?
+    Only differences between the logarithms matter.
+    Subtract the largest logarithm before you take exp.""")
+def underflow_(log_l):
+    w = np.exp(log_l)
+    return w / w.sum()
+
+
+@weights_of.wrong("""makes all weights equal where all likelihoods underflow: the measurement is
+         forgotten
+    One of four particles is 16 times as likely as another. Do yours show it far away?
+    That repair hides the underflow; it does not undo it.
+    Subtract the largest logarithm before you take exp.""")
+def all_equal(log_l):
+    w = np.exp(log_l)
+    return w / w.sum() if w.sum() > 0 else np.full(len(w), 1 / len(w))
+
+
+weights_of.wrong("""not-normalised: gives the best particle the weight 1 and does not normalise
+    What do your weights sum to?
+    Subtracting the maximum is the first half of the work.
+    Divide by w.sum().""")(lambda log_l: np.exp(log_l - np.max(log_l)))
+weights_of.wrong("""logarithms: normalises the logarithms themselves
+    Your least likely particle has the largest weight.
+    A weight is proportional to the likelihood, not to its logarithm.
+    Take exp first, then divide by the sum.""")(lambda log_l: log_l / np.sum(log_l))
+
+
+@weights_of.wrong("""has the sign of the exponent wrong
+    Which particle has the largest log-likelihood, and which the largest weight?
+    The likelihood is exp(log_l), not exp(-log_l).
+    w = np.exp(log_l - log_l.max()).""")
+def sign(log_l):
+    w = np.exp(np.min(log_l) - log_l)
+    return w / w.sum()

@@ -5,21 +5,16 @@ measurements are false. The notebook is ``notebooks/labs/lab4_tuning_outliers.ip
 """
 
 from pfkit.labs.lab import Lab
-from pfkit.labs.lab4 import (
-    detection,
-    gates,
-    modelled_noise,
-    motion_models,
-    precision,
-    undetected,
-)
+from pfkit.labs.lab4 import detection, gates, modelled_noise, motion_models, precision, undetected
 from pfkit.labs.lab4.detection import auc
 from pfkit.labs.lab4.motion_models import model_of, start_of
 from pfkit.labs.long_runs import LONG_RUNS
 from pfkit.labs.target import AREA, anywhere, around, target_log, track
 
-PARTS = (modelled_noise, motion_models, detection, precision, gates, undetected)
-LAB = Lab("lab4", "Lab 4: tuning and outliers", [q for part in PARTS for q in part.QUESTIONS])
+LAB = Lab.of(
+    __name__, "Lab 4: tuning and outliers",
+    modelled_noise, motion_models, detection, precision, gates, undetected,
+)  # fmt: skip
 check, use, predict, answer, summary, save, load = LAB.verbs()
 film, circle, half_false = modelled_noise.FILM, motion_models.CIRCLE, detection.FALSE
 

@@ -1,0 +1,103 @@
+"""Before the course: five questions, to see whether the course starts where you stand."""
+
+import math
+
+from pfkit.labs import Choice, Lab, Numeric, Question
+
+ARRAYS = Question("Arrays")
+
+column = Choice("""What does np.arange(6).reshape(2, 3)[:, 1] give?
+    a  array([3, 4, 5])
+       = That is the second row, [1, :]. The colon stands where everything is taken.
+    b* array([1, 4])
+       = Yes, the second column. In this course the first axis is the components of a state, so
+         cloud[:, 1] is the second particle of a cloud.
+    c  array([0, 3])
+       = That is the first column. Counting starts at 0.
+    d  the number 1
+       = The colon takes all rows, so two numbers are left.""")
+
+CHANCE = Question("Probability")
+
+door = Numeric(
+    """Probability of a door after the detector fired
+    Of 100 places, how many are doors that fire, and how many are walls that fire?
+    Doors that fire: 0.25 times 0.8. Walls that fire: 0.75 times 0.2.
+    0.20 / (0.20 + 0.15).""",
+    0.2 / 0.35,
+    tol=0.005,
+)
+
+door.wrong("""forgets-the-prior: is how often a door makes the detector fire, not how often
+         firing means a door
+    Three quarters of the corridor are walls. Where are they in your answer?
+    Weigh 0.8 by the share of doors and 0.2 by the share of walls.
+    0.25 * 0.8 / (0.25 * 0.8 + 0.75 * 0.2).""")(0.8)
+door.wrong("""not-normalised: is the probability of a door and a firing, not yet divided by that
+         of a firing
+    Door and wall, both after a firing, must sum to one.
+    Divide by 0.20 + 0.15.
+    0.20 / 0.35.""")(0.2)
+door.wrong("""ignores-the-firing: is what you knew before the detector fired
+    What does the firing change?
+    A door fires four times as often as a wall.
+    0.25 * 0.8 / (0.25 * 0.8 + 0.75 * 0.2).""")(0.25)
+
+spread = Numeric(
+    """Variance of one range; standard deviation of the mean of 100
+    A variance is a square; a mean of n independent values has a variance n times smaller.
+    0.1 squared; then the root of 0.01 / 100.
+    0.01 m², and 0.1 / 10 = 0.01 m. That the numbers agree is an accident; the units differ.""",
+    (0.01, 0.01),
+    tol=0.0005,
+    names=("variance [m²]", "sd of the mean [m]"),
+)
+
+spread.wrong("""divides-by-n: divides the standard deviation by 100 instead of by its root
+    Which of the two gets 100 times smaller, variance or standard deviation?
+    The variance does. Take the root afterwards.
+    0.1 / √100.""")((0.01, 0.001))
+spread.wrong("""variance-of-the-mean: gives the variance of the mean where its standard
+         deviation is asked
+    Which unit has your second number?
+    It is in m². Take its root.
+    √0.0001.""")((0.01, 0.0001))
+spread.wrong("""sd-as-variance: calls the standard deviation a variance
+    A variance of a length has the unit m².
+    Square 0.1 m.
+    0.1² = 0.01.""")((0.1, 0.01))
+
+PLANE = Question("Geometry")
+
+landmark = Numeric(
+    """Where is the landmark, and at which bearing?
+    Straight ahead is where the robot looks.
+    Three metres along +y from (1, 2). A bearing is measured from the robot's nose.
+    (1, 2 + 3), and straight ahead is bearing 0.""",
+    (1.0, 5.0, 0.0),
+    tol=0.01,
+    names=("x [m]", "y [m]", "bearing [rad]"),
+)
+
+landmark.wrong("""bearing-from-the-map: measures the bearing from the x axis of the map
+    Where does the robot look?
+    A bearing is the direction on the map minus the robot's heading.
+    Both are a quarter turn here, so the bearing is 0.""")((1.0, 5.0, math.pi / 2))
+landmark.wrong("""ahead-is-x: takes straight ahead for the x axis of the map
+    The robot faces along +y.
+    Its heading is a quarter turn: ahead is (0, 1).
+    (1, 2) + 3 * (0, 1).""")((4.0, 2.0, 0.0))
+
+heading = Choice("""What is the average of the headings 359° and 1°?
+    a  180°
+       = That is the average of the numbers. It points backwards.
+    b* 0°
+       = Yes. Add unit vectors and take the direction of the sum.
+    c  2°
+       = That is how far the two are apart.
+    d  there is none
+       = Two opposite headings have none; these two are nearly the same.""")
+
+
+LAB = Lab.of(__name__, "Prerequisites")
+check, use, predict, answer, summary, save, load = LAB.verbs()
