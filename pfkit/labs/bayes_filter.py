@@ -307,4 +307,4 @@ why = Text(
 
 
 LAB = Lab.of(__name__, "The Bayes filter in a corridor")
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb

@@ -448,4 +448,4 @@ report = Text(
 
 
 LAB = Lab.of(__name__, "Global localisation and symmetry")
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb

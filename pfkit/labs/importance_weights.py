@@ -281,4 +281,4 @@ why = Text(
 
 
 LAB = Lab.of(__name__, "Importance sampling and weights")
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb

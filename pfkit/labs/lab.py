@@ -5,6 +5,9 @@
     lab.check("q4b", systematic)              # a verdict; never raises
     systematic = lab.use("q4b", systematic)   # your answer if it passes, else the reference
     lab.predict("q7a", ("b", 70))             # locked: (b), 70 % sure; not without the 70
+    lab.solution("q4b")                       # worked code, once it passed or after three hints
+    lab.tick("q5c", 1, 3)                     # what of the rubric holds of your text
+    lab.student("jo17")                       # numbers and data of your own; lab.ask("q4a")
     lab.summary()                             # points, and your calibration
     lab.save(), lab.load()
 
@@ -12,6 +15,7 @@ With the environment variable ``PFKIT_LABS_STRICT=1`` a check that is not passed
 `LabError`: the tests use it to prove that solutions pass and that stubs do not.
 """
 
+import hashlib
 import inspect
 import os
 import sys
@@ -21,6 +25,8 @@ from pathlib import Path
 from types import ModuleType
 from typing import Any
 
+import numpy as np
+
 from pfkit.labs import controls, executed, progress
 from pfkit.labs.guard import guarded
 from pfkit.labs.items import Experiment, Item, Judgement, Prediction, Text, is_unanswered
@@ -28,6 +34,7 @@ from pfkit.labs.summary import Summary, Tally
 from pfkit.labs.verdict import Line, Verdict
 
 FINE = ("passed", "recorded", "predicted")
+HINTS = 3  # after which the solution may be seen
 
 
 class LabError(AssertionError):
@@ -101,17 +108,53 @@ class Lab:
         return cls(name.rpartition(".")[2], title, questions)
 
     def forget(self) -> None:
-        """Start afresh, as a new student."""
+        """Start afresh, as a new student in the world that is printed."""
         self.verdicts: dict[str, Verdict] = {}
-        self.answers: dict[str, dict[str, str]] = {}
+        self.answers: dict[str, dict[str, Any]] = {}
         self.predictions: dict[str, dict[str, Any]] = {}
+        self.ticks: dict[str, list[int]] = {}
         self._rungs: dict[tuple[str, str], int] = {}
+        self.who = self.term = ""
+        self.items = {item.id: item.origin or item for item in self.items.values()}
 
-    def verbs(self) -> tuple[Callable[..., Any], ...]:
-        """``check, use, predict, answer, summary, save, load``, for a lab module to publish."""
-        return (
-            self.check, self.use, self.predict, self.answer, self.summary, self.save, self.load,
-        )  # fmt: skip
+    VERBS = (
+        "check", "use", "predict", "answer", "ask", "tick", "solution", "student", "summary",
+        "save", "load",
+    )  # fmt: skip
+
+    def verb(self, name: str) -> Callable[..., Any]:
+        """The ``__getattr__`` of a module of questions: ``lab.check`` is `Lab.check`."""
+        if name not in self.VERBS:
+            raise AttributeError(f"{self.name} has no {name!r}, only {', '.join(self.VERBS)}")
+        return getattr(self, name)
+
+    # -- a world of one's own ----------------------------------------------------------------
+
+    def student(self, who: str, term: str = "") -> str:
+        """Ask this student's own numbers, data and order of options from now on.
+
+        Parameters
+        ----------
+        who : str
+            An id, such as the one of the university. The same id gives the same questions; ""
+            gives those that are printed.
+        term : str
+            Such as ``"2027-spring"``: makes the questions of another term differ.
+        """
+        self.forget()
+        self.who, self.term = str(who).strip(), str(term).strip()
+        if not self.who:
+            return f"{self.title}: the questions as printed."
+        for name, item in self.items.items():
+            text = "/".join((self.term, self.who.casefold(), self.name, name))
+            seed = int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big")
+            self.items[name] = item.personal(np.random.default_rng(seed))
+        return f'{self.title}: the questions of {self.who}. lab.ask("...") shows one.'
+
+    def ask(self, item_id: str) -> None:
+        """Print a question with the numbers and options of the student's own world."""
+        item = self.items.get(item_id) if isinstance(item_id, str) else None
+        print(f"{item_id}: {item.asked()}" if item else self._unknown(item_id))
 
     # -- answering ---------------------------------------------------------------------------
 
@@ -165,6 +208,38 @@ class Lab:
         given = repr(item_id)[:40] if isinstance(item_id, str) else type(item_id).__name__
         return Verdict("?", "unknown", message=f"{self.name} has no item {given}, only {names}")
 
+    def tick(self, item_id: str, *lines: int) -> None:
+        """Note which lines of a text's rubric hold of your answer; kept beside the teacher's.
+
+        Parameters
+        ----------
+        item_id : str
+        *lines : int
+            Numbers of the lines, from 1; none takes all ticks away.
+        """
+        item = self.items.get(item_id) if isinstance(item_id, str) else None
+        if not isinstance(item, Text):
+            print(f"{item_id} is no text with a rubric")
+            return
+        good = sorted({k for k in lines if k in range(1, len(item.rubric) + 1)})
+        self.ticks[item_id] = good
+        print(f"{item_id}: ticked {', '.join(map(str, good)) or 'none'} of {len(item.rubric)}")
+
+    def solution(self, item_id: str) -> None:
+        """Print the worked answer, once yours passed or after the last hint."""
+        item = self.items.get(item_id) if isinstance(item_id, str) else None
+        if item is None:
+            print(self._unknown(item_id))
+        elif self._may_see(item):
+            print(item.worked())
+        else:
+            print(f"{item_id}: the solution is shown once yours passed, or after three hints")
+
+    def _may_see(self, item: Item) -> bool:
+        verdict = self.verdicts.get(item.id)
+        shown = sum(n for (name, _), n in self._rungs.items() if name == item.id)
+        return (verdict is not None and verdict.status in FINE) or shown >= HINTS
+
     def _judge(self, item: Item, answer: Any) -> tuple[Judgement, str]:
         """Judgement and status, safe against whatever the answer does."""
         if told := self._executed.outdated(item.id):
@@ -217,8 +292,9 @@ class Lab:
         key = (item.id, mistake.name if mistake else "")
         rung = min(self._rungs.get(key, 0), len(ladder) - 1)
         self._rungs[key] = rung + 1
-        named = f"Your answer {mistake.words}. " if mistake else ""
-        return f"{named}Hint {rung + 1} of {len(ladder)}: {ladder[rung]}"
+        unknown = f"I do not recognise this mistake. {judged.example}".rstrip()
+        named = f"Your answer {mistake.words}." if mistake else unknown
+        return f"{named} Hint {rung + 1} of {len(ladder)}: {ladder[rung]}"
 
     def _predict(self, item: Prediction, answer: Any) -> Verdict:
         judged, status = self._judge(item, answer)
@@ -254,11 +330,17 @@ class Lab:
                 "score": v.score,
                 "max": item.points,
                 "misconception": v.misconception,
-                "choice": self.predictions.get(item.id, {}).get("choice", ""),
+                "choice": self._printed_choice(item),
                 "detail": "; ".join(x.says for x in v.lines if not x.ok),
+                "ticks": self.ticks.get(item.id, []),
                 "version": item.version,
             }
         return found
+
+    def _printed_choice(self, item: Item) -> str:
+        """The letter in print of a locked prediction: personal ones differ from student to student."""
+        letter = self.predictions.get(item.id, {}).get("choice", "")
+        return item.printed(letter) if isinstance(item, Prediction) else ""
 
     def guesses(self) -> list[tuple[str, float | None, bool]]:
         """Predictions whose experiment was checked: (item, sure, right?)."""
@@ -296,7 +378,7 @@ class Lab:
         if file.exists():
             old, told = progress.read(file, self.name)
             note = "" if old is not None else f" {told}"
-        kept = {"answers": self.answers, "predictions": self.predictions}
+        kept = {"answers": self.answers, "predictions": self.predictions, "ticks": self.ticks}
         progress.write(file, progress.empty(self.name) | kept)
         return f"Saved {len(self.answers)} answers to {file.name}.{note}"
 
@@ -306,6 +388,9 @@ class Lab:
         for name, kept in (data or {}).get("answers", {}).items():
             if name in self.items:
                 self.answers.setdefault(name, kept)
+        for name, kept in (data or {}).get("ticks", {}).items():
+            if isinstance(self.items.get(name), Text):
+                self.ticks.setdefault(name, kept)
         for name, kept in (data or {}).get("predictions", {}).items():
             item = self.items.get(name)
             if isinstance(item, Prediction) and kept["choice"] in item.options:

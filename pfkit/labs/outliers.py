@@ -273,4 +273,4 @@ why = Text(
 
 
 LAB = Lab.of(__name__, "Outliers")
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb

@@ -389,4 +389,4 @@ blind = Text(
 
 
 LAB = Lab.of(__name__, "The particle filter, assembled")
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb

@@ -42,7 +42,7 @@ def file_of(lab: str) -> Path:
 
 
 def empty(lab: str) -> dict[str, Any]:
-    return {"schema": SCHEMA, "lab": lab, "answers": {}, "predictions": {}}
+    return {"schema": SCHEMA, "lab": lab, "answers": {}, "predictions": {}, "ticks": {}}
 
 
 def parse(text: str, lab: str) -> dict[str, Any]:
@@ -63,6 +63,12 @@ def parse(text: str, lab: str) -> dict[str, Any]:
             "sure": float(sure) if _is_per_cent(sure) else None,
             "version": str(kept.get("version", "")),
         }
+    ticks = data.get("ticks", {})
+    if not isinstance(ticks, dict):
+        raise ValueError("its part 'ticks' is not a table")
+    for item, lines in ticks.items():
+        if isinstance(lines, list):
+            clean["ticks"][item] = [k for k in lines if isinstance(k, int)]
     return clean
 
 

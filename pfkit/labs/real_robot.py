@@ -340,4 +340,4 @@ report = Text(
 
 
 LAB = Lab.of(__name__, "A real robot")
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb

@@ -322,4 +322,4 @@ why = Text(
 
 
 LAB = Lab.of(__name__, "Resampling variance")
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb

@@ -1,5 +1,6 @@
 """What all items share: their declaration, and how a judgement is put."""
 
+import copy
 import dis
 import hashlib
 import inspect
@@ -7,6 +8,8 @@ import re
 from collections.abc import Callable
 from dataclasses import KW_ONLY, InitVar, dataclass, field
 from typing import Any, ClassVar, TypeVar
+
+import numpy as np
 
 from pfkit.labs.guard import describe
 from pfkit.labs.verdict import Line
@@ -93,12 +96,16 @@ class Refused:
 
 @dataclass(frozen=True)
 class Judgement:
-    """Which properties hold, which misconception was recognised, and a sentence of feedback."""
+    """Which properties hold, which misconception was recognised, and a sentence of feedback.
+
+    ``example`` shows a mistake that was not recognised: input, what came out, what should have.
+    """
 
     lines: tuple[Line, ...]
     misconception: Misconception | None = None
     feedback: str = ""
     status: str = ""
+    example: str = ""
 
     @property
     def fraction(self) -> float:
@@ -131,6 +138,7 @@ class Item:
     hints: Ladder = field(init=False, default=())
     misconceptions: list[Misconception] = field(init=False, default_factory=list)
     refused: list[Refused] = field(init=False, default_factory=list)
+    origin: "Item | None" = field(init=False, default=None)  # what a personal item was made from
 
     def __post_init__(self, text: str) -> None:
         self.title, *rest = written_lines(text)
@@ -146,6 +154,24 @@ class Item:
     def solution(self) -> Any:
         """A right answer, which also lets an unanswered notebook carry on."""
         raise NotImplementedError
+
+    def worked(self) -> str:
+        """The solution as a student would write it."""
+        return f"{self.id} = {self.solution()!r}"
+
+    def asked(self) -> str:
+        """The question in words, with the numbers and options of its world."""
+        return self.title
+
+    def personal(self, rng: np.random.Generator) -> "Item":
+        """The same question in another world: other numbers, data or order of options."""
+        new = copy.copy(self)
+        new.origin = self
+        new._enter_another(rng)
+        return new
+
+    def _enter_another(self, rng: np.random.Generator) -> None:
+        """Take what is personal from ``rng``; nothing, unless a type of item says what."""
 
     # -- declaring ---------------------------------------------------------------------------
 
@@ -184,6 +210,8 @@ class Item:
     @property
     def version(self) -> str:
         """Changes when the question changes, so that stored answers can be told apart."""
+        if self.origin is not None:
+            return self.origin.version
         identity = (self.letter, self.id, self.title, *self._identity())
         return hashlib.sha256(repr(identity).encode()).hexdigest()[:8]
 

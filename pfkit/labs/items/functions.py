@@ -1,13 +1,19 @@
 """C and X: functions, run by the check."""
 
-from collections.abc import Callable
+import ast
+import copy
+import inspect
+import textwrap
+from collections.abc import Callable, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar, Self
 
 import numpy as np
 
+from pfkit.labs import response
 from pfkit.labs.guard import describe
 from pfkit.labs.items.base import Item, Judgement, Misconception, Property, tested
+from pfkit.labs.items.counterexample import MOST_CALLS, Call, can_be_told, smallest
 from pfkit.labs.verdict import Line
 
 IN_PLACE = "It writes into its argument, so the caller's array changes, too: x = x + 1, not x += 1."
@@ -17,16 +23,26 @@ class Called:
     """A student's function, as properties see it.
 
     A list or tuple of numbers comes back as an array; ``wrote`` tells whether an argument was
-    written into.
+    written into, ``calls`` what went in and came out.
     """
 
     def __init__(self, function: Callable[..., Any]) -> None:
         self._function, self.wrote = function, False
+        self.calls: list[Call] = []
 
     def __call__(self, *args: Any, **kwargs: Any) -> Any:
         arrays = [(a, a.tobytes()) for a in args if isinstance(a, np.ndarray)]
-        found = self._function(*args, **kwargs)
+        keep = len(self.calls) < MOST_CALLS and can_be_told(args, kwargs)
+        went_in = copy.deepcopy((args, kwargs)) if keep else ((), {})
+        try:
+            found = self._function(*args, **kwargs)
+        except Exception as error:
+            if keep:
+                self.calls.append(Call(*went_in, raised=describe(error)))
+            raise
         self.wrote = self.wrote or any(a.tobytes() != was for a, was in arrays)
+        if keep:
+            self.calls.append(Call(*went_in, returned=copy.deepcopy(found)))
         return as_array(found)
 
 
@@ -75,6 +91,17 @@ class Function(Item):
     def solution(self) -> Any:
         return self.reference
 
+    def worked(self) -> str:
+        """The reference's source, without what declares the item around it."""
+        source = textwrap.dedent(inspect.getsource(self.reference))
+        for node in ast.walk(ast.parse(source)):
+            if isinstance(node, ast.FunctionDef):
+                lines = source.splitlines()[node.lineno - 1 : node.end_lineno]
+                return textwrap.dedent("\n".join(lines))
+            if isinstance(node, ast.Lambda):
+                return f"{self.id} = {ast.unparse(node)}"
+        return source
+
 
 @dataclass(eq=False)
 class Code(Function):
@@ -121,7 +148,12 @@ class Code(Function):
         mistake = None if right else self._recognise(called)
         if called.wrote:
             lines += (Line("leaves its arguments as they were", False),)
-        return Judgement(lines, mistake, IN_PLACE if called.wrote and not mistake else "")
+        return Judgement(
+            lines,
+            mistake,
+            IN_PLACE if called.wrote and not mistake else "",
+            example="" if right or mistake else smallest(called.calls, self.reference),
+        )
 
     def _fits(self, mistake: Misconception, evidence: Any) -> bool:
         if mistake.when is not None:
@@ -157,9 +189,14 @@ class Experiment(Function):
         Which statistic decides, and its threshold.
     runs : int
         How many runs a check makes.
+    settings : callable, optional
+        ``settings(rng)`` -> the settings of one check, a list of tuples: arguments that the
+        student did not choose. ``f(*setting, rng)`` is called ``runs`` times for each, and so is
+        the reference, with the same random numbers; outcomes have shape (runs, settings, 2).
+        The answer must *respond* as the reference does, see `pfkit.labs.response`.
     measure : callable
         ``measure(f, rng, runs)`` -> outcomes of the runs, an array whose first axis is the runs.
-        By default ``f(rng)`` is called once per run.
+        By default ``f(rng)`` is called once per run. Not together with ``settings``.
     false_fail : float
         Declared bound on the probability that a right experiment fails (at most 1e-3).
     margin : str
@@ -174,11 +211,15 @@ class Experiment(Function):
     claim: str
     test: str
     runs: int
+    settings: Callable[[np.random.Generator], Sequence[tuple]] | None = None
     measure: Callable[[Any, np.random.Generator, int], Any] = each_run
     false_fail: float = 1e-4
     margin: str = ""
     pool: int = 3_000
     seed: int = 2024
+
+    def _enter_another(self, rng: np.random.Generator) -> None:
+        self.seed = int(rng.integers(2**31))  # other random numbers, and so other settings
 
     def _identity(self) -> tuple:
         return (self.claim, self.test, self.runs)
@@ -186,7 +227,10 @@ class Experiment(Function):
     def outcomes(self, answer: Any, runs: int, seed: int | None = None) -> np.ndarray:
         """Measured outcomes, shape (runs, ...); raises ValueError if they make no sense."""
         rng = np.random.default_rng(self.seed if seed is None else seed)
-        found = np.asarray(self.measure(answer, rng, runs), dtype=float)
+        if self.settings is not None:
+            found = response.beside(answer, self.reference, self.settings(rng), rng, runs)
+        else:
+            found = np.asarray(self.measure(answer, rng, runs), dtype=float)
         if found.shape[:1] != (runs,):
             raise ValueError(f"expected results of {runs} runs, got shape {found.shape}")
         if not np.isfinite(found).all():

@@ -1,10 +1,12 @@
 """N: numbers with a tolerance."""
 
-from dataclasses import KW_ONLY, dataclass
+from collections.abc import Callable
+from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar
 
 import numpy as np
 
+from pfkit.labs.items import units
 from pfkit.labs.items.base import Item, Judgement, Misconception
 from pfkit.labs.verdict import Line
 
@@ -33,20 +35,81 @@ class Numeric(Item):
 
     Parameters
     ----------
-    key : float or tuple of float
+    key : float or tuple of float, or a function of the numbers in ``world``
     tol : float
         Accepted absolute difference, stated in the question.
     unit : str
     names : tuple of str
         One name per number, where there are several.
+    world : dict, optional
+        The numbers of the question in print; text, hints and names may hold ``{name}`` of them,
+        and keys and wrong values may be functions of them.
+    draw : callable, optional
+        ``draw(rng)`` -> such numbers of another world, for a student of one's own. Its questions
+        must be as hard: the tests try 500.
+
+    ::
+
+        power = Numeric('''Probability that {n} particles all miss one of {rooms} rooms
+            Each misses it with one chance.
+            They are independent.
+            (1 - 1/{rooms})^{n}''',
+            lambda n, rooms: (1 - 1 / rooms) ** n, tol=0.002,
+            world={"n": 4, "rooms": 4},
+            draw=lambda rng: {"n": int(rng.integers(3, 8)), "rooms": int(rng.integers(3, 7))})
+
+        power.wrong('''complement: is the chance that the room is not empty
+            ...three hints...''')(lambda n, rooms: 1 - (1 - 1 / rooms) ** n)
     """
 
     letter: ClassVar[str] = "N"
-    key: float | tuple[float, ...]
+    key: Any
     _: KW_ONLY
     tol: float
     unit: str = ""
     names: tuple[str, ...] = ()
+    world: dict[str, Any] | None = None
+    draw: Callable[[np.random.Generator], dict[str, Any]] | None = None
+    declared: tuple[Any, ...] = field(init=False, default=())
+
+    def __post_init__(self, text: str) -> None:
+        super().__post_init__(text)
+        self.declared = (self.title, self.hints, self.names, self.key, [])
+        self._enter(self.world)
+
+    def wrong(self, text: str, when: Callable[[Any], bool] | None = None) -> Callable[..., Any]:
+        declare = super().wrong(text, when)
+
+        def take(example: Any, **more: Any) -> Any:
+            declare(example, **more)
+            self.declared[-1].append(self.misconceptions.pop())
+            self._enter(self.world)
+            return example
+
+        return take
+
+    def _enter_another(self, rng: np.random.Generator) -> None:
+        if self.draw is not None:
+            self._enter(self.draw(rng))
+
+    def _enter(self, world: dict[str, Any] | None) -> None:
+        """Fill the numbers of a world into all that was declared."""
+        title, hints, names, key, mistakes = self.declared
+
+        def told(text: str) -> str:
+            return text if world is None else text.format(**world)
+
+        def value(of: Any) -> Any:
+            return of(**(world or {})) if callable(of) else of
+
+        self.title, self.hints = told(title), tuple(map(told, hints))
+        self.names, self.key = tuple(map(told, names)), value(key)
+        self.misconceptions = [
+            Misconception(
+                m.name, told(m.words), tuple(map(told, m.hints)), value(m.example), m.when
+            )
+            for m in mistakes
+        ]
 
     def solution(self) -> Any:
         return self.key
@@ -57,13 +120,14 @@ class Numeric(Item):
     def _numbers(self, answer: Any) -> np.ndarray:
         """The answer in the shape of the key; raises NotNumbers."""
         try:
-            x = np.asarray(answer)
+            x = np.asarray(self._read(answer))
             if x.dtype.kind == "O":
                 x = x.astype(float)  # fractions and decimals are numbers, too
+        except units.NotRead as wrong:
+            asked = f"Write plain numbers, in {units.words(self.unit)}." if self.unit else ""
+            raise NotNumbers(str(wrong), asked or "Write plain numbers.") from None
         except Exception:
             raise NotNumbers("not all of it is a number", "Fill in every place.") from None
-        if x.dtype.kind == "U":
-            raise NotNumbers("I got text", "Write numbers without quotation marks.")
         if x.dtype.kind not in "iuf":
             kind = type(answer).__name__
             raise NotNumbers(f"I got a value of type {kind}", "Write it as a plain number.")
@@ -71,9 +135,21 @@ class Numeric(Item):
             raise NotNumbers(f"I got {x.size}", "Separate several numbers by commas.")
         return x.reshape(np.shape(self.key)).astype(float)
 
+    def _read(self, answer: Any) -> Any:
+        """Text such as "14 cm" or "1/3" as the number that it says."""
+        if isinstance(answer, str):
+            return units.read(answer, self.unit)
+        if isinstance(answer, list | tuple):
+            return [self._read(part) for part in answer]
+        return answer
+
     def _close(self, x: Any, key: Any) -> np.ndarray:
         # a hair wider than stated, so that a value exactly on the edge is accepted
-        return np.abs(np.asarray(x, dtype=float) - key) <= self.tol * (1 + 1e-9)
+        off = np.asarray(x, dtype=float) - key
+        if self.unit in units.TURN:  # angles are the same a turn further
+            turn = units.TURN[self.unit]
+            off = off - turn * np.round(off / turn)
+        return np.abs(off) <= self.tol * (1 + 1e-9)
 
     def judge(self, answer: Any) -> Judgement:
         count = np.size(self.key)
@@ -101,8 +177,10 @@ class Numeric(Item):
         wrong = [(k, v) for k, v, ok in zip(key, given, close, strict=True) if not ok]
         if all(_is_rounded(v, k) for k, v in wrong):
             return f"Right, but rounded too far: give it to within {self.tol:g}."
-        if np.abs(key).max() <= 1 and self._close(given / 100, key).all():
-            return "Right in per cent; the question asks for a number between 0 and 1."
+        named = {units.another(v, k, self.tol, self.unit) for k, v in zip(key, given, strict=True)}
+        if len(named) == 1 and (unit := named.pop()) and (unit != "%" or np.abs(key).max() <= 1):
+            asked = units.words(self.unit)
+            return f"Right in {units.words(unit)}; the question asks for {asked}."
         if self._close(np.sort(given), np.sort(key)).all():
             return "The right numbers, in another order than the question asks for."
         return ""

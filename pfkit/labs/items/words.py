@@ -4,6 +4,8 @@ import re
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar
 
+import numpy as np
+
 from pfkit.labs.items.base import Item, Judgement, Ladder
 from pfkit.labs.verdict import Line
 
@@ -12,6 +14,9 @@ def _letter(answer: Any) -> str:
     """``"a"`` of a, A, (a), a), "a) with the text of the option"; "" for anything else."""
     found = re.match(r"\s*\(?([A-Za-z])(?:[).:]|\s*$)", answer) if isinstance(answer, str) else None
     return found.group(1).lower() if found else ""
+
+
+FEWEST_WORDS = 5
 
 
 @dataclass(eq=False)
@@ -24,6 +29,7 @@ class Options(Item):
     options: dict[str, str] = field(init=False, default_factory=dict)
     feedback: dict[str, str] = field(init=False, default_factory=dict)
     key: str = field(init=False, default="")
+    public: dict[str, str] = field(init=False, default_factory=dict)
 
     def read(self, lines: Ladder) -> None:
         for line in lines:
@@ -41,6 +47,22 @@ class Options(Item):
 
     def _identity(self) -> tuple:
         return (tuple(self.options.items()), self.key)
+
+    def asked(self) -> str:
+        return "\n".join([self.title, *(f"  ({k}) {text}" for k, text in self.options.items())])
+
+    def _enter_another(self, rng: np.random.Generator) -> None:
+        """The options in another order; ``public`` tells the letters that they have in print."""
+        letters, options, feedback = list(self.options), self.options, self.feedback
+        order = [letters[i] for i in rng.permutation(len(letters))]
+        self.public = dict(zip(letters, order, strict=True))
+        self.options = {mine: options[theirs] for mine, theirs in self.public.items()}
+        self.feedback = {m: feedback[t] for m, t in self.public.items() if t in feedback}
+        self.key = next(mine for mine, theirs in self.public.items() if theirs == self.key)
+
+    def printed(self, letter: str) -> str:
+        """The letter that an option has in print, for tables over a class."""
+        return self.public.get(letter, letter)
 
 
 @dataclass(eq=False)
@@ -133,8 +155,21 @@ class Text(Item):
         if not isinstance(answer, str):
             return Judgement((Line("a text in quotation marks", False, "I got something else"),))
         sentences = [s for s in re.split(r"[.!?]+(?:\s|$)", answer) if s.strip()]
+        words = {w.lower() for w in re.findall(r"[^\W\d_]{2,}", answer)}
         lines = (
-            Line("at least 8 words", len(answer.split()) >= 8),
+            Line(f"at least {FEWEST_WORDS} different words", len(words) >= FEWEST_WORDS),
             Line("at most 3 sentences", len(sentences) <= 3, f"I count {len(sentences)}"),
         )
-        return Judgement(lines, status="recorded" if all(x.ok for x in lines) else "")
+        if not all(x.ok for x in lines):
+            return Judgement(lines)
+        return Judgement(lines, None, self.told, status="recorded")
+
+    @property
+    def told(self) -> str:
+        """Rubric and model answer, for the student to compare with once it is recorded."""
+        rubric = "\n".join(f"  {k}. {line}" for k, line in enumerate(self.rubric, start=1))
+        numbers = ", ".join(str(k) for k in range(1, len(self.rubric) + 1))
+        return (
+            f"What a good answer does:\n{rubric}\nA model answer: {self.model}\n"
+            f'Tick what holds of yours, in the same cell: lab.tick("{self.id}", {numbers})'
+        )

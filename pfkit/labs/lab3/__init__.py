@@ -26,7 +26,7 @@ LAB = Lab.of(
     weights, deprivation, summaries, densities, sample_variance, particle_count,
     motion_models, likelihood, resamplers, survival, noise, ablations,
 )  # fmt: skip
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb
 film, line = deprivation.FILM, motion_models.LINE
 
 __all__ = [

@@ -15,7 +15,7 @@ LAB = Lab.of(
     __name__, "Lab 4: tuning and outliers",
     modelled_noise, motion_models, detection, precision, gates, undetected,
 )  # fmt: skip
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb
 film, circle, half_false = modelled_noise.FILM, motion_models.CIRCLE, detection.FALSE
 
 

@@ -4,4 +4,4 @@ from pfkit.labs.lab import Lab
 from pfkit.labs.motion import arcs, by_hand, clouds, experiments, predictions, vehicles
 
 LAB = Lab.of(__name__, "Motion", predictions, by_hand, vehicles, arcs, clouds, experiments)
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb

@@ -4,4 +4,4 @@ from pfkit.labs.lab import Lab
 from pfkit.labs.sensing import by_hand, experiments, ideas, predictions, score, there_and_back
 
 LAB = Lab.of(__name__, "Sensing", predictions, by_hand, ideas, there_and_back, score, experiments)
-check, use, predict, answer, summary, save, load = LAB.verbs()
+__getattr__ = LAB.verb
