@@ -40,6 +40,7 @@ def upper_bound(fails: int, n: int, alpha: float = 0.05) -> float:
 
 
 SIDE_BY_SIDE = 250  # runs of one call: quick, and not too large for memory
+WORLDS = 6  # sets of settings that a replay visits
 
 
 def replay(
@@ -62,26 +63,41 @@ def replay(
     pool : int
         How many independent runs to make, by default ``item.pool``; each decision draws
         ``item.runs`` of them without replacement, so the pool should be several times larger.
+        An item with settings has such a pool, shared out, in each of `WORLDS` sets of settings.
     seed : int
         Differs from the seed of the check itself.
     fresh : bool
         Make new runs for each decision instead: for answers whose runs are not independent.
+
+    Notes
+    -----
+    An answer that raises, or whose outcomes make no sense, fails every decision.
     """
     rng = np.random.default_rng(seed)
-    if not fresh:
-        pool = pool or item.pool
-        size = max(item.runs, min(pool, SIDE_BY_SIDE))
-        parts = [item.outcomes(answer, size, seed=seed + 1 + k) for k in range(-(-pool // size))]
-        outcomes = np.concatenate(parts)
-    fails, names = 0, dict[str, int]()
-    for k in range(decisions):
-        if fresh:
-            drawn = item.outcomes(answer, item.runs, seed=seed + 1 + k)
-        else:
-            drawn = outcomes[rng.choice(len(outcomes), item.runs, replace=False)]
-        judged = item.decide(drawn)
-        if judged.fraction < 1:
-            fails += 1
-            name = judged.misconception.name if judged.misconception else ""
-            names[name] = names.get(name, 0) + 1
+    pool = pool or item.pool
+    worlds = WORLDS if item.settings is not None else 1
+    pools = []
+    try:
+        for w in range(0 if fresh else worlds):
+            size = max(2 * item.runs, pool // worlds) if worlds > 1 else pool
+            part = max(item.runs, min(size, SIDE_BY_SIDE))
+            parts = [
+                item.outcomes(answer, part, seed=seed + 1 + k + 1000 * w, world=seed + w)
+                for k in range(-(-size // part))
+            ]
+            pools.append(np.concatenate(parts))
+        fails, names = 0, dict[str, int]()
+        for k in range(decisions):
+            if fresh:
+                drawn = item.outcomes(answer, item.runs, seed=seed + 1 + k, world=seed + k)
+            else:
+                runs = pools[k % worlds]
+                drawn = runs[rng.choice(len(runs), item.runs, replace=False)]
+            judged = item.decide(drawn)
+            if judged.fraction < 1:
+                fails += 1
+                name = judged.misconception.name if judged.misconception else ""
+                names[name] = names.get(name, 0) + 1
+    except Exception:
+        return Rate(decisions, decisions, 1.0, {"": decisions})
     return Rate(fails, decisions, upper_bound(fails, decisions), names)

@@ -16,6 +16,7 @@ from pfkit.labs.items.base import Item, Judgement, Misconception, Property, test
 from pfkit.labs.items.counterexample import MOST_CALLS, Call, can_be_told, smallest
 from pfkit.labs.verdict import Line
 
+MOST_KEPT = 64  # outcomes of the reference that are kept for the next answer
 IN_PLACE = "It writes into its argument, so the caller's array changes, too: x = x + 1, not x += 1."
 
 
@@ -217,6 +218,7 @@ class Experiment(Function):
     margin: str = ""
     pool: int = 3_000
     seed: int = 2024
+    _kept: dict[tuple, np.ndarray] = field(init=False, default_factory=dict, repr=False)
 
     def _enter_another(self, rng: np.random.Generator) -> None:
         self.seed = int(rng.integers(2**31))  # other random numbers, and so other settings
@@ -224,18 +226,41 @@ class Experiment(Function):
     def _identity(self) -> tuple:
         return (self.claim, self.test, self.runs)
 
-    def outcomes(self, answer: Any, runs: int, seed: int | None = None) -> np.ndarray:
-        """Measured outcomes, shape (runs, ...); raises ValueError if they make no sense."""
-        rng = np.random.default_rng(self.seed if seed is None else seed)
-        if self.settings is not None:
-            found = response.beside(answer, self.reference, self.settings(rng), rng, runs)
+    def outcomes(
+        self, answer: Any, runs: int, seed: int | None = None, world: int | None = None
+    ) -> np.ndarray:
+        """Measured outcomes, shape (runs, ...); raises ValueError if they make no sense.
+
+        Parameters
+        ----------
+        answer : callable
+        runs : int
+        seed : int, optional
+            Of the random numbers.
+        world : int, optional
+            Seed of the settings, by default that of the check.
+        """
+        seed = self.seed if seed is None else seed
+        if self.settings is None:
+            found = np.asarray(self.measure(answer, np.random.default_rng(seed), runs), dtype=float)
         else:
-            found = np.asarray(self.measure(answer, rng, runs), dtype=float)
+            settings = self.settings(np.random.default_rng(self.seed if world is None else world))
+            theirs = response.each_setting(answer, settings, seed, runs)
+            found = np.stack([theirs, self._right(settings, seed, runs)], axis=-1)
         if found.shape[:1] != (runs,):
             raise ValueError(f"expected results of {runs} runs, got shape {found.shape}")
         if not np.isfinite(found).all():
             raise ValueError("some results are nan or infinite")
         return found
+
+    def _right(self, settings: Sequence[tuple], seed: int, runs: int) -> np.ndarray:
+        """The reference's outcomes, computed once for all answers that are compared with them."""
+        key = (repr(settings), seed, runs)
+        if key not in self._kept:
+            if len(self._kept) >= MOST_KEPT:
+                self._kept.clear()
+            self._kept[key] = response.each_setting(self.reference, settings, seed, runs)
+        return self._kept[key]
 
     def judge(self, answer: Any) -> Judgement:
         if not callable(answer):

@@ -1,0 +1,92 @@
+"""An experiment responds to settings it did not choose; what only looks right does not pass."""
+
+import numpy as np
+import pytest
+
+from pfkit.labs import experiment, replay
+from pfkit.labs.response import Counted, Watched, each_setting, same_mean, same_scatter
+
+
+@pytest.fixture(scope="module")
+def item():
+    @experiment(
+        """Resamplings until one of two clusters is lost
+        h1
+        h2
+        h3""",
+        claim="about 2 N ln 2",
+        test="mean within 4.5 standard errors of a right experiment's, at each N",
+        runs=200,
+        settings=lambda rng: [(int(n),) for n in rng.choice(np.arange(10, 60, 2), 3, False)],
+    )
+    def lost(N, rng):
+        k, age = N // 2, 0
+        while 0 < k < N:
+            k, age = rng.binomial(N, k / N), age + 1
+        return age
+
+    lost.holds("the mean follows N", same_mean())
+    lost.holds("the runs scatter", same_scatter())
+    return lost
+
+
+def test_right_programs_pass_whatever_their_random_numbers(item):
+    def by_choice(N, rng):
+        cloud, age = np.arange(N) % 2, 0
+        while 0 < cloud.sum() < N:
+            cloud, age = cloud[rng.integers(N, size=N)], age + 1
+        return age
+
+    assert item.judge(item.reference).fraction == 1
+    rate = replay(item, by_choice, decisions=300, pool=4800)
+    assert rate.fails == 0, rate
+
+
+@pytest.mark.parametrize(
+    "lazy",
+    [
+        lambda N, rng: 2 * N * np.log(2),
+        lambda N, rng: rng.integers(1, 60),
+        lambda N, rng: 40,
+        lambda N, rng: rng.normal(2 * N * np.log(2), 1.0),
+        lambda N, rng: N,
+        lambda N, rng: rng.exponential(N),
+    ],
+    ids=["no scatter", "random", "constant", "little scatter", "N itself", "half as long"],
+)
+def test_lazy_answers_are_refused(item, lazy):
+    rate = replay(item, lazy, decisions=200, pool=4800)
+    assert rate.share >= 0.95, rate
+
+
+def test_half_the_size_is_refused(item):
+    half = lambda N, rng: item.reference(N // 4 * 2, rng)  # noqa: E731
+    assert replay(item, half, decisions=200, pool=4800).share >= 0.95
+
+
+def test_the_random_numbers_depend_on_the_seed_alone():
+    settings = [(1,), (2,)]
+    a = each_setting(lambda k, rng: k * rng.random(), settings, 5, 4)
+    b = each_setting(lambda k, rng: rng.random(), settings, 5, 4)
+    np.testing.assert_allclose(a, b * [1, 2])
+
+
+def test_more_than_one_number_is_named():
+    with pytest.raises(ValueError, match=r"one number per run, got shape \(3,\)"):
+        each_setting(lambda rng: np.ones(3), [()], 1, 2)
+
+
+def test_where_a_right_one_does_not_scatter_the_answer_must_not():
+    x = np.zeros((20, 1, 2))
+    assert same_scatter()(x) is True
+    x[:, 0, 0] = np.random.default_rng(1).normal(size=20)
+    assert "sd" in same_scatter()(x)
+
+
+def test_calls_are_counted():
+    counted = Counted(np.sum)
+    assert counted([1, 2]) == 3 and counted.calls == 1
+    watched = Watched(np.random.default_rng(1))
+    watched.random()
+    watched.random()
+    assert watched.calls == {"random": 2}
