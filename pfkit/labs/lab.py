@@ -338,7 +338,7 @@ class Lab:
         return found
 
     def _printed_choice(self, item: Item) -> str:
-        """The letter in print of a locked prediction: personal ones differ from student to student."""
+        """The letter in print of a locked prediction: personal orders of options differ."""
         letter = self.predictions.get(item.id, {}).get("choice", "")
         return item.printed(letter) if isinstance(item, Prediction) else ""
 

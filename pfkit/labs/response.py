@@ -2,8 +2,8 @@
 
 A constant at the right value, a coin with the right bias, half the size or another quantity all
 look right at one setting. So the check chooses settings that the student did not see, runs the
-student's function and the reference with the same random numbers, and asks whether the first does
-what the second does: the same mean at every setting, the same scatter from run to run.
+student's function and the reference with the same random numbers, and asks whether the first
+does what the second does: the same mean at every setting, the same scatter from run to run.
 
 `each_setting` makes the outcomes, `same_mean` and `same_scatter` decide, `Counted` and `Watched` see
 whether an experiment was made at all.
