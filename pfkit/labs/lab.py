@@ -378,7 +378,9 @@ class Lab:
         if file.exists():
             old, told = progress.read(file, self.name)
             note = "" if old is not None else f" {told}"
-        kept = {"answers": self.answers, "predictions": self.predictions, "ticks": self.ticks}
+        kept = {"answers": self.answers, "predictions": self.predictions}
+        if self.ticks:
+            kept["ticks"] = self.ticks
         progress.write(file, progress.empty(self.name) | kept)
         return f"Saved {len(self.answers)} answers to {file.name}.{note}"
 

@@ -42,7 +42,7 @@ def file_of(lab: str) -> Path:
 
 
 def empty(lab: str) -> dict[str, Any]:
-    return {"schema": SCHEMA, "lab": lab, "answers": {}, "predictions": {}, "ticks": {}}
+    return {"schema": SCHEMA, "lab": lab, "answers": {}, "predictions": {}}
 
 
 def parse(text: str, lab: str) -> dict[str, Any]:
@@ -66,10 +66,12 @@ def parse(text: str, lab: str) -> dict[str, Any]:
     ticks = data.get("ticks", {})
     if not isinstance(ticks, dict):
         raise ValueError("its part 'ticks' is not a table")
-    for item, lines in ticks.items():
-        if isinstance(lines, list):
-            clean["ticks"][item] = [k for k in lines if isinstance(k, int)]
-    return clean
+    good = {
+        item: [k for k in x if isinstance(k, int)]
+        for item, x in ticks.items()
+        if isinstance(x, list)
+    }
+    return clean | ({"ticks": good} if good else {})
 
 
 def _is_per_cent(sure: Any) -> bool:

@@ -181,7 +181,7 @@ class Numeric(Item):
         if len(named) == 1 and (unit := named.pop()) and (unit != "%" or np.abs(key).max() <= 1):
             asked = units.words(self.unit)
             return f"Right in {units.words(unit)}; the question asks for {asked}."
-        if self._close(np.sort(given), np.sort(key)).all():
+        if np.unique(key).size == key.size and self._close(np.sort(given), np.sort(key)).all():
             return "The right numbers, in another order than the question asks for."
         return ""
 
