@@ -5,8 +5,8 @@ look right at one setting. So the check chooses settings that the student did no
 student's function and the reference with the same random numbers, and asks whether the first
 does what the second does: the same mean at every setting, the same scatter from run to run.
 
-`each_setting` makes the outcomes, `same_mean` and `same_scatter` decide, `Counted` and `Watched` see
-whether an experiment was made at all.
+`each_setting` makes the outcomes, `same_mean` and `same_scatter` decide, `Counted` and `Watched`
+see whether an experiment was made at all.
 """
 
 from __future__ import annotations
