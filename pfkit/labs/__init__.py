@@ -13,7 +13,7 @@ which they are asked, and publishes the verbs of its `Lab`::
     ess = Numeric(...)
 
     LAB = Lab.of(__name__, "Resampling variance")
-    check, use, predict, answer, summary, save, load = LAB.verbs()
+    __getattr__ = LAB.verb
 
 A long one is a folder, and ``Lab.of(__name__, title, *modules)`` collects the questions of its
 modules. There is no list to add it to: `catalogue` finds each module that publishes a `LAB`.
