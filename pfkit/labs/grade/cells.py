@@ -7,7 +7,7 @@ import ast
 from collections.abc import Iterator
 from typing import Any
 
-from pfkit.explore.cells import bound_and_used
+from pfkit.labs.names import bound_and_used
 
 MODULES = {"np", "pf", "plt", "lab", "plotting"}  # a call of theirs changes no name of the cell
 

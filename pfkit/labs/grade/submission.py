@@ -12,10 +12,10 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
 
-from pfkit.explore.cells import bound_and_used
 from pfkit.labs import catalogue, progress
 from pfkit.labs.grade.cells import labs_imported, parsed
 from pfkit.labs.lab import Lab
+from pfkit.labs.names import bound_and_used
 
 BIGGEST = 20_000_000  # bytes; a lab with all its figures has about one million
 SUFFIXES = (".ipynb", ".json")
