@@ -15,8 +15,8 @@ import sys
 import numpy as np
 
 import pfkit as pf
-from pfkit.localise import localise
-from pfkit.odometry import informative_steps
+from pfkit.judging.localise import localise
+from pfkit.logs.odometry import informative_steps
 
 ENOUGH, ROUNDS, MOST = 5.0, 3, 20_000
 

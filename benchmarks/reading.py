@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 import pfkit as pf
-from pfkit.datasets import find_folder
+from pfkit.logs.datasets import find_folder
 
 MOST, ROUNDS = 8.0, 9
 

@@ -14,10 +14,8 @@ from typing import Any, NoReturn
 
 import numpy as np
 
-from pfkit.calibration import Calibration
-from pfkit.datasets import load_log
 from pfkit.errors import ParameterError, PfkitError
-from pfkit.localise import (
+from pfkit.judging.localise import (
     Score,
     Track,
     calibrate_first,
@@ -27,7 +25,9 @@ from pfkit.localise import (
     scored_steps,
     settings_for,
 )
-from pfkit.log import Log
+from pfkit.logs.calibration import Calibration
+from pfkit.logs.datasets import load_log
+from pfkit.worlds.log import Log
 
 
 class OneLineParser(argparse.ArgumentParser):

@@ -1,4 +1,7 @@
-r"""The chi-square distribution: how long may a normal vector be?
+r"""The densities that everything else is built from: Gaussian, Student's t and chi-square.
+
+The first two are densities of one error. Their constants are kept: they cancel in the weights,
+but not in the evidence, nor in a mixture.
 
 The squared length of a standard normal vector with k components has the chi-square
 distribution with k degrees of freedom. Squared *normalised* errors have it too, if an
@@ -18,7 +21,65 @@ from __future__ import annotations
 
 import math
 
-from pfkit.errors import ParameterError, require_count, require_number
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from pfkit.errors import ParameterError, require_count, require_finite, require_number
+
+Array = NDArray[np.float64]
+NUMBER = (float, int, np.floating, np.integer)
+
+
+def log_gaussian(error: ArrayLike, sigma: float) -> Array:
+    r"""Log density of a zero-mean Gaussian.
+
+    .. math:: \log \mathcal N(e;\, 0, \sigma^2) = -\frac{e^2}{2\sigma^2} - \log(\sigma\sqrt{2\pi})
+
+    Parameters
+    ----------
+    error : array_like, any shape and unit
+    sigma : float, > 0, in the unit of the error
+
+    Returns
+    -------
+    array of the shape of the error
+
+    Raises
+    ------
+    ParameterError
+        If sigma is not positive, or an error is not a number.
+    """
+    return gaussian(require_finite("error", error), _scale(sigma))
+
+
+def gaussian(error: Array, sigma: float) -> Array:
+    """As `log_gaussian`, for callers that have checked their numbers."""
+    log_p = np.square(error)
+    log_p *= -0.5 / sigma**2
+    log_p -= math.log(sigma * math.sqrt(2 * math.pi))
+    return log_p
+
+
+def error_density(error: Array, sigma: float, nu: float) -> Array:
+    r"""Log density of Student's t with scale sigma and nu degrees of freedom; inf: Gaussian.
+
+    .. math:: -\tfrac{\nu+1}{2}\log\Big(1+\frac{e^2}{\nu\sigma^2}\Big)
+              + \log\frac{\Gamma((\nu+1)/2)}{\Gamma(\nu/2)\,\sigma\sqrt{\pi\nu}}
+
+    Its tails are heavy: one wild measurement cannot veto a particle. For sensors, which have
+    checked their numbers.
+    """
+    if math.isinf(nu):
+        return gaussian(error, sigma)
+    scaled = error / sigma
+    constant = math.lgamma((nu + 1) / 2) - math.lgamma(nu / 2) - 0.5 * math.log(math.pi * nu)
+    return constant - math.log(sigma) - 0.5 * (nu + 1) * np.log1p(scaled * scaled / nu)
+
+
+def _scale(sigma: float) -> float:
+    if not isinstance(sigma, NUMBER) or not 0 < sigma < math.inf:
+        raise ParameterError(f"sigma must be one number > 0, got {sigma!r}; 0 has no density")
+    return sigma
 
 
 def chi2_tail(x: float, k: int) -> float:

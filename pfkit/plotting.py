@@ -25,9 +25,9 @@ from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.maps import LandmarkMap
 from pfkit.palette import COLOURS
-from pfkit.particles import Particles
+from pfkit.particles.particle_set import Particles
+from pfkit.worlds.maps import LandmarkMap
 
 TRUTH, ESTIMATE, DEAD_RECKONING, PARTICLES, LANDMARKS, EXACT, MEASUREMENT = (
     COLOURS[name][0]

@@ -169,7 +169,6 @@ half, one = (0.5, "fraction"), (1.0, "positive")
 scheme = dict(w=w, rng=r, n=n)
 
 TABLE: dict[str, Row] = {
-    # L0
     "wrap": (pf.wrap, dict(angle=(1.0, "angle"))),
     "compose": (pf.compose, dict(pose=pose, motion=pose)),
     "inverse": (pf.inverse, dict(pose=pose)),
@@ -178,7 +177,6 @@ TABLE: dict[str, Row] = {
         pf.circular_mean,
         dict(theta=([1.0, 2.0], "scores"), w=([1.0, 1.0], "numbers")),
     ),
-    # L1
     "Particles": (
         pf.Particles,
         dict(state=(BEL.state, "state"), log_w=(BEL.log_w, "log-weights of M")),
@@ -218,7 +216,6 @@ TABLE: dict[str, Row] = {
     "every": (pf.every, dict(n=n)),
     "on_information": (pf.on_information, dict(nats=(0.5, "non-negative"))),
     "information": (pf.information, dict(bel=bel)),
-    # L2
     "drive_arc": (
         pf.drive_arc,
         dict(pose=pose, distance=(1.0, "numbers"), turn=(0.1, "numbers")),
@@ -256,7 +253,6 @@ TABLE: dict[str, Row] = {
         pf.OutlierMixture,
         dict(sensor=sensor, epsilon=half, density=one),
     ),
-    # L3
     "mean_pose": (pf.mean_pose, dict(bel=bel)),
     "covariance": (pf.covariance, dict(bel=bel)),
     "predict": (pf.predict, dict(bel=bel, u=u, motion=motion, rng=r)),
@@ -348,7 +344,6 @@ def identity(x):
 
 
 TABLE |= {
-    # L1
     "OccupancyGrid": (
         pf.OccupancyGrid,
         dict(p=(np.zeros((3, 3)), "errors"), resolution=one, origin=((0.0, 0.0, 0.0), "pose")),
@@ -372,7 +367,6 @@ TABLE |= {
         dict(scheme=(pf.systematic, "function"), w=([0.5, 0.5], "one set of weights"), rng=r, n=n),
     ),
     "Genealogy": (pf.Genealogy, {}),
-    # L2
     "Bicycle": (pf.Bicycle, dict(L=one, alpha=(0.1, "non-negative"))),
     "DifferentialDrive": (pf.DifferentialDrive, dict(r=one, L=one, alpha=(0.1, "non-negative"))),
     "FixedTarget": (pf.FixedTarget, dict(sigma=(1.0, "non-negative"))),
@@ -412,7 +406,6 @@ TABLE |= {
     ),
     "Sight": (pf.Sight, dict(world=world, r_max=(5.0, "positive or inf"), fov=one)),
     "Outliers": (pf.Outliers, dict(epsilon=half, low=((0.0,), "angle"), high=((1.0,), "angle"))),
-    # L3
     "map_particle": (pf.map_particle, dict(bel=bel)),
     "top_share_mean": (pf.top_share_mean, dict(bel=bel, share=half)),
     "clusters": (pf.clusters, dict(bel=bel, cell=((1.0, 1.0, 1.0), "positive"))),
@@ -540,7 +533,6 @@ TABLE |= {
         pf.tempered_update,
         dict(bel=bel, z=z, sensor=sensor, rng=r, keep=half, kernel=(0.3, "non-negative")),
     ),
-    # L4
     "pose_error": (pf.pose_error, estimate),
     "position_error": (pf.position_error, estimate),
     "rmse": (pf.rmse, estimate),
@@ -629,7 +621,6 @@ TABLE |= {
     "load_plaza": (pf.load_plaza, dict(folder=(None, "folder"))),
     "read_log": (pf.read_log, dict(folder=(None, "folder"))),
     "save_log": (pf.save_log, dict(log=(None, "log"), folder=("unused", "nothing"))),
-    # L5
     "tabulate": (pf.tabulate, dict(columns=({"a": [1]}, "columns"))),
     "summarise": (
         pf.summarise,
@@ -678,10 +669,11 @@ INTERFACES = {"MotionModel", "Sensor", "SensorModel", "Step"}
 def public_names() -> set[str]:
     """Functions and classes of the package that a caller can hand something wrong."""
     names = set()
-    for name, value in vars(pf).items():
+    for name in pf.__all__:
+        value = getattr(pf, name)
         known = inspect.isfunction(value) or inspect.isclass(value)
         error = inspect.isclass(value) and issubclass(value, Exception)
-        if known and not error and not name.startswith("_"):
+        if known and not error:
             names.add(name)
     return names - RESULTS - INTERFACES
 

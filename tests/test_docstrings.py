@@ -5,23 +5,19 @@ from __future__ import annotations
 import doctest
 import importlib
 import inspect
-import pkgutil
 import re
 
 import numpy as np
 import pytest
 
 import pfkit as pf
+from pfkit.rooms import CORE
 
-MODULES = sorted(
-    f"pfkit.{m.name}"
-    for m in pkgutil.iter_modules(pf.__path__)
-    if m.name not in {"plotting", "widgets", "explore", "labs", "__main__"}
-)
+MODULES = [f"pfkit.{module}" for modules in CORE.values() for module in modules]
 PUBLIC = {
     name: value
-    for name, value in vars(pf).items()
-    if not name.startswith("_") and (inspect.isfunction(value) or inspect.isclass(value))
+    for name in pf.__all__
+    if inspect.isfunction(value := getattr(pf, name)) or inspect.isclass(value)
 }
 ERRORS = {n for n, v in PUBLIC.items() if inspect.isclass(v) and issubclass(v, Exception)}
 FUNCTIONS = sorted(n for n, v in PUBLIC.items() if inspect.isfunction(v))

@@ -14,7 +14,7 @@ spec.loader.exec_module(check)
 
 @pytest.mark.parametrize("mutation", check.MUTATIONS, ids=lambda m: m.name)
 def test_each_mutation_names_one_line_and_existing_tests(mutation):
-    source = (ROOT / "pfkit" / f"{mutation.module}.py").read_text(encoding="utf-8")
+    source = check.source_of(mutation, ROOT).read_text(encoding="utf-8")
     assert source.count(mutation.old) == 1 and mutation.new != mutation.old
     for name in mutation.tests.split():
         assert (ROOT / "tests" / f"{name}.py").exists()
@@ -30,5 +30,5 @@ def test_a_mutation_is_noticed_and_the_sound_copy_is_not(tmp_path):
     shutil.copy(ROOT / "pyproject.toml", tmp_path)
     wrong = next(m for m in check.MUTATIONS if m.name == "ess-square")
     killed = check.killer(wrong, tmp_path)
-    assert killed is not None and killed.startswith("tests/test_particles.py")
+    assert killed is not None and killed.startswith("tests/particles/test_particle_set.py")
     assert check.killer(wrong._replace(new=wrong.old), tmp_path) is None

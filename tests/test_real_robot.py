@@ -14,7 +14,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.localise import reckon, score
+from pfkit.judging.localise import reckon, score
 
 ROOT = Path(__file__).parents[1]
 sys.path.insert(0, str(ROOT / "tools"))

@@ -2,7 +2,7 @@
 
     make test                                      all of them; stops at the first that fails
     python tools/run.py test --keep-going          runs the rest as well
-    python tools/run.py test --only layers unit    only these
+    python tools/run.py test --only rooms unit    only these
     python tools/run.py test --list                says what there is
     python tools/run.py lint [--fix]               style and format alone
 
@@ -59,7 +59,7 @@ def stages(lax: bool = False) -> list[Stage]:
     nbval = ["--nbval-lax" if word == "--nbval" else word for word in NBVAL] if lax else NBVAL
     tools = ("notebooks", "prose_numbers", "chapter_numbers", "options")
     tool = [[PYTHON, f"tools/{name}.py", "--check"] for name in tools]
-    separate = ["tests/test_layers.py", "tests/test_stamps.py", "tests/book", "tests/live"]
+    separate = ["tests/test_rooms.py", "tests/test_stamps.py", "tests/book", "tests/live"]
     apart = [f"--ignore={name}" for name in separate]
     memory = [word for word in PYTEST if word not in ("-p", "no:cacheprovider")]
     memory += ["-o", f"cache_dir={MEMORY}", "-rs"]
@@ -68,7 +68,7 @@ def stages(lax: bool = False) -> list[Stage]:
     return [
         Stage("lint", "style and format (ruff)", ruff()),
         Stage("types", "types of pfkit (mypy)", [[PYTHON, "-m", "mypy"]]),
-        Stage("layers", "who may import whom", [[*PYTEST, "tests/test_layers.py"]]),
+        Stage("rooms", "who may import whom", [[*PYTEST, "tests/test_rooms.py"]]),
         Stage("unit", "unit, property and oracle tests", [[*PYTEST, *TWO_CORES, "tests", *apart]]),
         Stage(
             "stamps", "stored outputs are up to date", [[*PYTEST, "tests/test_stamps.py"], *tool]

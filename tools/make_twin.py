@@ -19,7 +19,7 @@ from pathlib import Path
 import numpy as np
 
 from pfkit import wrap
-from pfkit.motion import drive_arc
+from pfkit.models.motion import drive_arc
 
 SUBJECTS = np.arange(6, 21)
 LANDMARKS = np.array(  # one a row, metres, to the centimetre

@@ -24,7 +24,7 @@ ROOT = Path(__file__).resolve().parents[1]
 
 
 class Mutation(NamedTuple):
-    """One wrong line: `old` becomes `new` in pfkit/`module`.py; `tests` should notice."""
+    """One wrong line: `old` becomes `new` in pfkit.`module`; `tests` should notice."""
 
     name: str
     module: str
@@ -46,99 +46,104 @@ MUTATIONS = [
     ),
     Mutation(
         "normalise-sum",
-        "particles",
+        "particles.particle_set",
         "return shifted - log_sum, (peak + log_sum)",
         "return shifted, (peak + log_sum)",
-        "test_particles",
+        "particles/test_particle_set",
     ),
     Mutation(
         "ess-square",
-        "particles",
+        "particles.particle_set",
         "return total * total / squares",
         "return total / np.sqrt(squares)",
-        "test_particles",
+        "particles/test_particle_set",
     ),
     Mutation(
         "comb-off-by-one",
-        "resampling",
+        "particles.resampling",
         "edges += ticks - 1 - tooth",
         "edges += 2 * ticks - 1 - tooth",
-        "test_resampling",
+        "particles/test_resampling",
     ),
     Mutation(
         "residual-fraction",
-        "resampling",
+        "particles.resampling",
         "rest = np.maximum(expected - copies, 0.0)",
         "rest = np.maximum(w / edges[-1] - copies / w.size**2, 0.0)",
-        "test_resampling",
+        "particles/test_resampling",
     ),
     Mutation(
         "arc-direction",
-        "motion",
+        "models.motion",
         "direction = theta + half",
         "direction = theta + turn",
-        "test_motion",
+        "models/test_motion",
     ),
     Mutation(
         "bearing-heading",
-        "landmark_sensors",
+        "models.landmark_sensors",
         "bearing_error = _wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)",
         "bearing_error = _wrap(phi - self.bias_phi - np.arctan2(dy, dx) - theta)",
-        "test_landmark_sensors test_filters",
+        "models/test_landmark_sensors filters/test_particle_filter",
     ),
     Mutation(
         "bearing-wrap",
-        "landmark_sensors",
+        "models.landmark_sensors",
         "bearing_error = _wrap(phi - self.bias_phi - np.arctan2(dy, dx) + theta)",
         "bearing_error = phi - self.bias_phi - np.arctan2(dy, dx) + theta",
-        "test_landmark_sensors test_filters",
+        "models/test_landmark_sensors filters/test_particle_filter",
     ),
     Mutation(
         "gaussian-constant",
-        "sensors",
+        "densities",
         "log_p -= math.log(sigma * math.sqrt(2 * math.pi))",
         "log_p -= math.log(sigma)",
-        "test_sensors test_filters",
+        "models/test_sensors filters/test_particle_filter",
     ),
     Mutation(
         "update-forgets-weights",
-        "filters",
+        "filters.particle_filter",
         "normalise(bel.log_w + log_likelihood)",
         "normalise(log_likelihood)",
-        "test_filters",
+        "filters/test_particle_filter",
     ),
     Mutation(
         "resample-without-measurement",
-        "filters",
+        "filters.particle_filter",
         "poor = np.zeros(np.shape(ess), dtype=bool)",
         "poor = np.broadcast_to(np.asarray(trigger(bel, k), dtype=bool), np.shape(ess))",
-        "test_triggers test_filters",
+        "particles/test_triggers filters/test_particle_filter",
     ),
     Mutation(
         "heading-mean",
-        "estimators",
+        "particles.estimators",
         "mean[2] = np.arctan2(_average(np.sin(theta), w), _average(np.cos(theta), w))",
         "mean[2] = _average(theta, w)",
-        "test_estimators test_filters",
+        "particles/test_estimators filters/test_particle_filter",
     ),
     Mutation(
         "covariance-wrap",
-        "estimators",
+        "particles.estimators",
         "difference[2] = wrap(difference[2])",
         "difference[2] = difference[2]",
-        "test_estimators",
+        "particles/test_estimators",
     ),
 ]
 
 
+def source_of(mutation: Mutation, folder: Path) -> Path:
+    """The file in a copy of the repository that holds the mutation's module."""
+    return folder / "pfkit" / Path(*mutation.module.split(".")).with_suffix(".py")
+
+
 def killer(mutation: Mutation, folder: Path) -> str | None:
     """The first test that fails when the copy in `folder` has this mistake, or None."""
-    path = folder / "pfkit" / f"{mutation.module}.py"
+    path = source_of(mutation, folder)
     source = path.read_text(encoding="utf-8")
     if source.count(mutation.old) != 1:
         raise SystemExit(
             f"{mutation.name}: the line {mutation.old!r} stands {source.count(mutation.old)} times "
-            f"in pfkit/{mutation.module}.py; mend the table in {Path(__file__).name}"
+            f"in {path.relative_to(folder)}; mend the table in {Path(__file__).name}"
         )
     path.write_text(source.replace(mutation.old, mutation.new), encoding="utf-8")
     try:
@@ -163,7 +168,7 @@ def main() -> int:
     options = parser.parse_args()
     chosen = [m for m in MUTATIONS if not options.names or m.name in options.names]
     if options.list:
-        print("\n".join(f"{m.name:28} pfkit/{m.module}.py: {m.old}  ->  {m.new}" for m in chosen))
+        print("\n".join(f"{m.name:28} pfkit.{m.module}: {m.old}  ->  {m.new}" for m in chosen))
         return 0
     alive = []
     with tempfile.TemporaryDirectory() as name:

@@ -35,6 +35,9 @@ QUIET = {
     "PFKIT_WIDGETS": "off",  # explorables leave a line of text in a stored notebook, no widget
 }
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
+# Says where a name is defined. A name has one definition (tests/test_rooms.py), so that no output can
+# change with this file alone, and a new name makes no notebook stale.
+NAMES = "pfkit/rooms.py"
 COLOURS = 128
 SHORTEST_ALT = 20  # characters: less cannot describe a figure
 
@@ -70,7 +73,8 @@ def dependencies(opened: list[str], modules: list[str], notebook: Path) -> list[
     if "<program>" in opened:  # what a started program reads cannot be seen: count everything
         found |= {p for top in ("pfkit", "data") for p in (ROOT / top).rglob("*")}
     kept = {path for path in found if path.is_relative_to(ROOT) and path.is_file()}
-    names = {path.relative_to(ROOT).as_posix() for path in kept - {notebook.resolve()}}
+    kept -= {notebook.resolve(), ROOT / NAMES}
+    names = {path.relative_to(ROOT).as_posix() for path in kept}
     return sorted(n for n in names if not n.startswith((".", "_")) and "__pycache__" not in n)
 
 

@@ -22,7 +22,7 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.__main__ import draw_track
-from pfkit.localise import DOUBT, calibrate_first, localise, reckon, score, settings_for
+from pfkit.judging.localise import DOUBT, calibrate_first, localise, reckon, score, settings_for
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "data" / "results"

@@ -1,7 +1,8 @@
-"""A name in a docstring of pfkit leads to what it names: `wrap`, `filters.step`, `survival`.
+"""A name in a docstring of pfkit leads to what it names: `wrap`, `history.run`, `survival`.
 
-Docstrings say `systematic`, not `pfkit.resampling.systematic`. Sphinx asks here when it does not
-find a name by itself; we offer the only thing of pfkit that ends so, and nothing if there are two.
+Docstrings say `systematic`, not `pfkit.particles.resampling.systematic`. Sphinx asks here when it
+does not find a name by itself; we offer the only thing of pfkit that ends so, and nothing if there
+are two.
 """
 
 from __future__ import annotations

@@ -36,11 +36,11 @@ from pfkit.errors import (
     require_method,
     require_number,
 )
+from pfkit.exact.kalman import Gaussian, angles_of, condition, wrap_rows
 from pfkit.geometry import circular_mean
-from pfkit.kalman import Gaussian, angles_of, condition, wrap_rows
-from pfkit.landmark_sensors import LandmarkSensor
-from pfkit.motion import MotionModel
-from pfkit.sensors import Sensor, how_many
+from pfkit.models.landmark_sensors import LandmarkSensor
+from pfkit.models.motion import MotionModel
+from pfkit.models.sensors import Sensor, how_many
 
 Array = NDArray[np.float64]
 Function = Callable[[Array], Array]

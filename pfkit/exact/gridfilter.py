@@ -35,11 +35,11 @@ from pfkit.errors import (
     require_method,
     require_rng,
 )
+from pfkit.exact.posegrid import PoseGrid
 from pfkit.geometry import compose
-from pfkit.motion import MotionModel
-from pfkit.particles import normalise
-from pfkit.posegrid import PoseGrid
-from pfkit.sensors import SensorModel, how_many
+from pfkit.models.motion import MotionModel
+from pfkit.models.sensors import SensorModel, how_many
+from pfkit.particles.particle_set import normalise
 
 Array = NDArray[np.float64]
 

@@ -39,8 +39,8 @@ from pfkit.errors import (
     require_finite,
     require_instance,
 )
-from pfkit.particles import Particles, require_particles
-from pfkit.posegrid import PoseGrid
+from pfkit.exact.posegrid import PoseGrid
+from pfkit.particles.particle_set import Particles, require_particles
 
 Array = NDArray[np.float64]
 

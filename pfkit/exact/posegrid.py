@@ -20,6 +20,7 @@ from functools import cached_property
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pfkit.densities import log_gaussian
 from pfkit.errors import (
     ParameterError,
     ShapeError,
@@ -31,8 +32,7 @@ from pfkit.errors import (
     whole_cells,
 )
 from pfkit.geometry import wrap
-from pfkit.particles import Particles, normalise
-from pfkit.sensors import log_gaussian
+from pfkit.particles.particle_set import Particles, normalise
 
 Array = NDArray[np.float64]
 Bounds = tuple[float, float, float, float]

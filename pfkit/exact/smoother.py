@@ -21,11 +21,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import require_instance
-from pfkit.gaussian import Transform, gaussian_predict, gaussian_update, linearise
-from pfkit.kalman import Gaussian, angles_of, wrap_rows
-from pfkit.log import Log
-from pfkit.motion import MotionModel
-from pfkit.sensors import Sensor
+from pfkit.exact.gaussian import Transform, gaussian_predict, gaussian_update, linearise
+from pfkit.exact.kalman import Gaussian, angles_of, wrap_rows
+from pfkit.models.motion import MotionModel
+from pfkit.models.sensors import Sensor
+from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
 

@@ -18,7 +18,7 @@ import numpy as np
 
 from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
-from pfkit.resampling import SCHEMES
+from pfkit.particles.resampling import SCHEMES
 
 LETTERS = "12345"
 COLOURS = tuple(f"particle {k}" for k in LETTERS)

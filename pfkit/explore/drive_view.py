@@ -2,19 +2,15 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import numpy as np
 
 from pfkit.explore.pen import Pen
-
-if TYPE_CHECKING:
-    from pfkit.explore.drive import Drive
+from pfkit.explore.scene import Scene
 
 FADE = 10  # ticks for which the beams of a reading stay
 
 
-def draw_drive(s: Drive, pen: Pen) -> None:
+def draw_drive(s: Scene, pen: Pen) -> None:
     """The arena and the strip charts; in the sensing panel the likelihood map alone."""
     x0, x1, y0, y1 = s.bounds
     alone = s.values["show"] == "map"
@@ -40,7 +36,7 @@ def draw_drive(s: Drive, pen: Pen) -> None:
     draw_charts(s, pen)
 
 
-def draw_cloud(s: Drive, pen: Pen) -> None:
+def draw_cloud(s: Scene, pen: Pen) -> None:
     x, y, theta = s.bel.state
     if s.bel.M <= 1500:
         pen.quills("particles", x, y, theta, length=6, size=3)
@@ -52,7 +48,7 @@ def draw_cloud(s: Drive, pen: Pen) -> None:
         pen.bubbles("particles", x[heavy], y[heavy], size)
 
 
-def _landmarks(s: Drive, pen: Pen) -> None:
+def _landmarks(s: Scene, pen: Pen) -> None:
     mx, my = s.landmarks
     chosen = s.values["hand"] == "landmark"
     beside = 0.45 if chosen else 0.25  # metres; outside the ring of the selected one
@@ -64,7 +60,7 @@ def _landmarks(s: Drive, pen: Pen) -> None:
         pen.ellipses("landmarks", mx[s.selected], my[s.selected], 0.42, 0.42, width=2, dash=3)
 
 
-def _beams(s: Drive, pen: Pen) -> None:
+def _beams(s: Scene, pen: Pen) -> None:
     """Each reading as the robot took it: a beam of the measured length and direction."""
     x, y, theta = s.truth
     width = 2.2 * (1 - s.z_age / FADE) + 0.4
@@ -80,7 +76,7 @@ def _beams(s: Drive, pen: Pen) -> None:
     draw_readings(s, pen, *ends, width)
 
 
-def draw_readings(s: Drive, pen: Pen, x: np.ndarray, y: np.ndarray, width: float) -> None:
+def draw_readings(s: Scene, pen: Pen, x: np.ndarray, y: np.ndarray, width: float) -> None:
     """Beams from the robot to (x, y): honest ones solid, false ones dashed and crossed out."""
     x0, y0, _ = s.truth
     honest, false = ~s.false, s.false
@@ -96,7 +92,7 @@ def draw_readings(s: Drive, pen: Pen, x: np.ndarray, y: np.ndarray, width: float
         pen.symbols("false reading", "cross", x[false], y[false], size=9)
 
 
-def draw_estimate(s: Drive, pen: Pen) -> None:
+def draw_estimate(s: Scene, pen: Pen) -> None:
     x, y, theta = s.estimate
     (a, c), (_, b) = s.Sigma[0, :2], s.Sigma[1, :2]
     middle, half = (a + b) / 2, np.hypot((a - b) / 2, c)
@@ -106,7 +102,7 @@ def draw_estimate(s: Drive, pen: Pen) -> None:
     pen.robots("estimate", x, y, theta, radius=0.14)
 
 
-def draw_charts(s: Drive, pen: Pen, landmarks: bool = True) -> None:
+def draw_charts(s: Scene, pen: Pen, landmarks: bool = True) -> None:
     """Legend, effective share of the particles, and error, over the last ten seconds."""
     left, width = 0.765, 0.225
     pen.view((left, 0.74, width, 0.24), (0, 1), (0, 4), frame=False)

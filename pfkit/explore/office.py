@@ -17,7 +17,7 @@ from pfkit.explore.drive_panels import CONTROLS, HANDS
 from pfkit.explore.drive_view import draw_charts, draw_cloud, draw_estimate, draw_readings
 from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Control, Mission, Panel
-from pfkit.worlds import OFFICE_DOORS, OFFICE_FURNITURE, OFFICE_ROUTE, OFFICE_WALLS
+from pfkit.worlds.arenas import OFFICE_DOORS, OFFICE_FURNITURE, OFFICE_ROUTE, OFFICE_WALLS
 
 REACH = 5.0  # metres, the laser's
 BODY = 0.22  # metres, the robot's radius

@@ -6,7 +6,7 @@ and the truth to hold them against. `run` drives a filter along a log and keeps 
 
 It does not keep the clouds: a thousand steps of a thousand particles are 24 MB. Who wants to
 see them passes a function as `watch`, which is called after each step and may keep what it
-likes: every tenth cloud for a film, the ancestors for a family tree (`pfkit.genealogy`), a line
+likes: every tenth cloud for a film, the ancestors for a family tree (`genealogy`), a line
 on the screen for progress.
 """
 
@@ -19,14 +19,14 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError, require_rng
-from pfkit.estimators import covariance, mean_pose
-from pfkit.filters import Info, step
-from pfkit.log import Log
-from pfkit.motion import MotionModel
-from pfkit.particles import Particles, require_particles
-from pfkit.resampling import Resampler, systematic
-from pfkit.sensors import SensorModel
-from pfkit.triggers import Trigger
+from pfkit.filters.particle_filter import Info, step
+from pfkit.models.motion import MotionModel
+from pfkit.models.sensors import SensorModel
+from pfkit.particles.estimators import covariance, mean_pose
+from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.resampling import Resampler, systematic
+from pfkit.particles.triggers import Trigger
+from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
 

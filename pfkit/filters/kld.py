@@ -34,11 +34,11 @@ from pfkit.errors import (
     require_rng,
     whole_cells,
 )
-from pfkit.filters import Info, predict, select, update
-from pfkit.motion import MotionModel
-from pfkit.particles import Particles, require_particles
-from pfkit.resampling import multinomial
-from pfkit.sensors import SensorModel, how_many
+from pfkit.filters.particle_filter import Info, predict, select, update
+from pfkit.models.motion import MotionModel
+from pfkit.models.sensors import SensorModel, how_many
+from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.resampling import multinomial
 
 CELL = (0.5, 0.5, math.pi / 18)
 
@@ -152,7 +152,7 @@ def kld_step(
     ----------
     bel : Particles with state (D, M)
     u, z, motion, sensor, rng
-        As in `filters.step`.
+        As in `step`.
     cell, epsilon, delta, least
         As in `kld_count`.
     most : int
@@ -167,7 +167,7 @@ def kld_step(
     Raises
     ------
     ParameterError, ShapeError, DataError, DegenerateWeightsError
-        As `filters.predict`, `filters.update` and `kld_count`.
+        As `predict`, `update` and `kld_count`.
 
     Notes
     -----

@@ -35,11 +35,11 @@ from pfkit.errors import (
     require_method,
     require_rng,
 )
-from pfkit.motion import MotionModel
-from pfkit.particles import Particles, normalise, require_particles
-from pfkit.resampling import Resampler, systematic
-from pfkit.sensors import SensorModel, how_many
-from pfkit.triggers import Trigger, ess_below
+from pfkit.models.motion import MotionModel
+from pfkit.models.sensors import SensorModel, how_many
+from pfkit.particles.particle_set import Particles, normalise, require_particles
+from pfkit.particles.resampling import Resampler, systematic
+from pfkit.particles.triggers import Trigger, ess_below
 
 Array = NDArray[np.float64]
 
@@ -250,7 +250,7 @@ def step(
         As in `predict`, `update` and `resample`.
     threshold : float in [0, 1], or a function (bel, k) -> bool
         0 never resamples; 1 resamples after every informative measurement. For other rules see
-        `pfkit.triggers`.
+        `triggers`.
     k : int
         Number of the step, for triggers that count.
 

@@ -43,14 +43,14 @@ from pfkit.errors import (
     require_rng,
     require_shape,
 )
-from pfkit.filters import Info, step
+from pfkit.filters.particle_filter import Info, step
 from pfkit.geometry import wrap
-from pfkit.landmark_sensors import RangeBearing
-from pfkit.motion import MotionModel
-from pfkit.particles import Particles, require_particles
-from pfkit.priors import SamplesPoses
-from pfkit.resampling import Resampler, systematic
-from pfkit.sensors import SensorModel, how_many
+from pfkit.models.landmark_sensors import RangeBearing
+from pfkit.models.motion import MotionModel
+from pfkit.models.sensors import SensorModel, how_many
+from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.priors import SamplesPoses
+from pfkit.particles.resampling import Resampler, systematic
 
 Array = NDArray[np.float64]
 
@@ -221,7 +221,7 @@ def augmented_step(
     Parameters
     ----------
     bel, u, z, motion, sensor, rng, scheme
-        As in `filters.step`.
+        As in `step`.
     memory : Memory, ``Memory()`` at the start
     world : LandmarkMap or OccupancyGrid, optional
         New particles are drawn over its free space. Without it they are drawn where the
@@ -238,7 +238,7 @@ def augmented_step(
     Raises
     ------
     ParameterError, ShapeError, DataError, DegenerateWeightsError
-        As `filters.step`, `Memory.remember` and `poses_seeing`.
+        As `step`, `Memory.remember` and `poses_seeing`.
 
     Notes
     -----

@@ -37,12 +37,12 @@ from pfkit.errors import (
     require_non_negative_number,
     require_rng,
 )
-from pfkit.estimators import covariance
-from pfkit.filters import select
+from pfkit.filters.particle_filter import select
 from pfkit.geometry import wrap
-from pfkit.particles import Particles, ess, normalise, require_particles
-from pfkit.resampling import Resampler, systematic
-from pfkit.sensors import SensorModel
+from pfkit.models.sensors import SensorModel
+from pfkit.particles.estimators import covariance
+from pfkit.particles.particle_set import Particles, ess, normalise, require_particles
+from pfkit.particles.resampling import Resampler, systematic
 
 Array = NDArray[np.float64]
 CLOSE = 0.1  # the next exponent is sought to a tenth of itself

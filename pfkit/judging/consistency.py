@@ -21,14 +21,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.chi2 import chi2_quantile
-from pfkit.comparison import Interval, require_level, wilson_interval
+from pfkit.densities import chi2_quantile
 from pfkit.errors import (
     ParameterError,
     ShapeError,
     require_count,
     require_finite,
 )
+from pfkit.judging.comparison import Interval, require_level, wilson_interval
 
 Array = NDArray[np.float64]
 

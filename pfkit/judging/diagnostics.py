@@ -13,8 +13,8 @@ It says nothing about when the error was large. `settle_time` does: the moment a
 stays small. And it says nothing without a rival. The cheapest one is `dead_reckoning`: follow
 the odometer, ignore every measurement. A filter that does not beat it does not work.
 
-One run is an anecdote. `pfkit.comparison` puts intervals on many, `pfkit.consistency` asks
-whether the filter *knows* how wrong it is, `pfkit.genealogy` who descends from whom.
+One run is an anecdote. `comparison` puts intervals on many, `consistency` asks
+whether the filter *knows* how wrong it is, `genealogy` who descends from whom.
 """
 
 from __future__ import annotations
@@ -33,11 +33,11 @@ from pfkit.errors import (
     require_method,
     require_number,
 )
+from pfkit.filters.history import History
 from pfkit.geometry import wrap
-from pfkit.history import History
-from pfkit.log import Log
-from pfkit.motion import MotionModel
-from pfkit.table import Table, tabulate
+from pfkit.judging.table import Table, tabulate
+from pfkit.models.motion import MotionModel
+from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
 

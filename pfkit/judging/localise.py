@@ -33,16 +33,13 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.calibration import Calibration, calibrate
-from pfkit.diagnostics import pose_error, settle_time
 from pfkit.errors import DataError, ParameterError, require_count
-from pfkit.estimators import covariance, mean_pose
-from pfkit.filters import predict, select, update
+from pfkit.filters.particle_filter import predict, select, update
+from pfkit.filters.tempering import tempered_update
 from pfkit.geometry import compose
-from pfkit.landmark_sensors import Range, RangeBearing
-from pfkit.log import Log
-from pfkit.maps import LandmarkMap
-from pfkit.odometry import (
+from pfkit.judging.diagnostics import pose_error, settle_time
+from pfkit.logs.calibration import Calibration, calibrate
+from pfkit.logs.odometry import (
     ComposedMotion,
     Drift,
     Odometer,
@@ -50,12 +47,15 @@ from pfkit.odometry import (
     fill_in,
     informative_steps,
 )
-from pfkit.particles import Particles
-from pfkit.priors import gaussian_prior, uniform_prior
-from pfkit.resampling import systematic
-from pfkit.robust import OutlierMixture
-from pfkit.sensors import Sensor
-from pfkit.tempering import tempered_update
+from pfkit.models.landmark_sensors import Range, RangeBearing
+from pfkit.models.robust import OutlierMixture
+from pfkit.models.sensors import Sensor
+from pfkit.particles.estimators import covariance, mean_pose
+from pfkit.particles.particle_set import Particles
+from pfkit.particles.priors import gaussian_prior, uniform_prior
+from pfkit.particles.resampling import systematic
+from pfkit.worlds.log import Log
+from pfkit.worlds.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 Watch = Callable[[int, int], object]

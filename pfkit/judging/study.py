@@ -48,7 +48,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError, ShapeError, require_callable, require_count, require_method
-from pfkit.table import Table, from_csv, summarise, tabulate, to_csv
+from pfkit.judging.table import Table, from_csv, summarise, tabulate, to_csv
 
 __all__ = ["from_csv", "grid", "one_by_one", "run", "summarise", "to_csv"]
 

@@ -26,8 +26,8 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.comparison import bootstrap_interval
 from pfkit.errors import DataError, ParameterError, ShapeError, as_path, require_instance
+from pfkit.judging.comparison import bootstrap_interval
 
 Table = NDArray[np.void]
 

@@ -15,13 +15,17 @@ from __future__ import annotations
 
 import os
 from html import escape
-from typing import TYPE_CHECKING, Any
+from typing import Any, Protocol
 
 from pfkit.labs.executed import shell
 from pfkit.labs.items import Choice, Item, Prediction
+from pfkit.labs.verdict import Verdict
 
-if TYPE_CHECKING:
-    from pfkit.labs.lab import Lab
+
+class Checker(Protocol):
+    """What the controls need of a lab: the verb they press."""
+
+    def check(self, item_id: str, answer: Any) -> Verdict: ...
 
 
 def front_end_present() -> bool:
@@ -35,7 +39,7 @@ def front_end_present() -> bool:
         return False
 
 
-def offer(lab: Lab, item: Item) -> bool:
+def offer(lab: Checker, item: Item) -> bool:
     """Show controls for a choice or a prediction; False where that is not possible."""
     off = os.environ.get("PFKIT_WIDGETS") == "off"
     if off or not isinstance(item, Choice | Prediction) or not front_end_present():
@@ -60,7 +64,7 @@ def _number(text: str) -> float | str | None:
         return text
 
 
-def build(lab: Lab, item: Choice | Prediction, widgets: Any) -> Any:
+def build(lab: Checker, item: Choice | Prediction, widgets: Any) -> Any:
     """The control: one radio button per option, a field for sureness, a button, the verdict."""
     radio = widgets.RadioButtons(
         options=[(f"({k}) {text}", k) for k, text in item.options.items()],

@@ -16,9 +16,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 import pfkit as pf
-from pfkit.particles import equal_log_weights
-from pfkit.resampling import Resampler, systematic
-from pfkit.targets import CircleTarget, FixedTarget, LineTarget
+from pfkit.models.targets import CircleTarget, FixedTarget, LineTarget
+from pfkit.particles.particle_set import equal_log_weights
+from pfkit.particles.resampling import Resampler, systematic
 
 Array = NDArray[np.float64]
 
@@ -133,7 +133,7 @@ def track(
     log : Log from `target_log`
     bel : Particles (D, M), or (D, B, M) for B runs side by side
     motion, sensor, rng
-        As in `pfkit.filters.step`.
+        As in `pf.step`.
     scheme : Resampler or None
         None never resamples: the weights multiply up.
     gate : float, 1/px^2

@@ -29,8 +29,8 @@ from numpy.typing import NDArray
 
 from pfkit.errors import DataError, require_finite, require_instance
 from pfkit.geometry import between, wrap
-from pfkit.log import Log
-from pfkit.odometry import Drift, Odometer
+from pfkit.logs.odometry import Drift, Odometer
+from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
 WINDOW = 4.0  # seconds: long enough to see a scale error above the truth's own noise

@@ -32,7 +32,7 @@ from pfkit.errors import (
     require_method,
     require_rng,
 )
-from pfkit.motion import MotionModel
+from pfkit.models.motion import MotionModel
 
 Array = NDArray[np.float64]
 Driver = Callable[[int, Array], ArrayLike]

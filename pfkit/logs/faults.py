@@ -8,7 +8,7 @@ detector of outliers can be scored; on real data nobody knows them.
 Missing and false are different faults. A filter that gets no measurement stays as unsure as its
 motion made it, and does nothing wrong. A filter that gets a false one is lied to: if it multiplies
 a Gaussian density into its weights, one lie outvotes all that it knew. The first needs no remedy;
-for the second there are three in `pfkit.robust`. What is hidden is hidden after the draw: the
+for the second there are three in `robust`. What is hidden is hidden after the draw: the
 same seed gives the same measurements to a robot that sees farther.
 """
 
@@ -30,7 +30,7 @@ from pfkit.errors import (
     require_rng,
 )
 from pfkit.geometry import wrap
-from pfkit.maps import LandmarkMap
+from pfkit.worlds.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 

@@ -25,11 +25,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.datasets.text import read_table
 from pfkit.errors import DataError, ShapeError, as_path, require_count, require_instance
-from pfkit.log import Log
-from pfkit.maps import LandmarkMap
-from pfkit.occupancy import OccupancyGrid
+from pfkit.logs.datasets.text import read_table
+from pfkit.worlds.log import Log
+from pfkit.worlds.maps import LandmarkMap
+from pfkit.worlds.occupancy import OccupancyGrid
 
 Array = NDArray[np.float64]
 

@@ -36,7 +36,7 @@ from pfkit.errors import (
     require_non_negative,
 )
 from pfkit.geometry import between, compose, wrap
-from pfkit.log import Log
+from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
 TRANSPOSE = (1, 0, 2)

@@ -25,7 +25,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.driving import Driver, Kidnap, drive
 from pfkit.errors import (
     ParameterError,
     ShapeError,
@@ -35,11 +34,12 @@ from pfkit.errors import (
     require_positive,
     require_rng,
 )
-from pfkit.faults import Outliers
-from pfkit.intermittent import Intermittent
-from pfkit.log import Log
-from pfkit.motion import MotionModel
-from pfkit.odometry_motion import OdometryMotion
+from pfkit.logs.driving import Driver, Kidnap, drive
+from pfkit.logs.faults import Outliers
+from pfkit.models.intermittent import Intermittent
+from pfkit.models.motion import MotionModel
+from pfkit.models.odometry_motion import OdometryMotion
+from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
 

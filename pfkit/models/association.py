@@ -27,8 +27,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError
-from pfkit.landmark_sensors import LandmarkSensor
-from pfkit.sensors import Sensor
+from pfkit.models.landmark_sensors import LandmarkSensor
+from pfkit.models.sensors import Sensor
 
 Array = NDArray[np.float64]
 

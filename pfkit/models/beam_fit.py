@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.beams import SHARES, BeamModel
 from pfkit.errors import (
     DataError,
     ParameterError,
@@ -28,6 +27,7 @@ from pfkit.errors import (
     require_count,
     require_finite,
 )
+from pfkit.models.beams import SHARES, BeamModel
 
 Array = NDArray[np.float64]
 

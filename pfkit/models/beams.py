@@ -17,7 +17,7 @@ the two apart: a reading of r_max has the probability that the sensor reports it
 lost or the wall too far; a shorter one has the density of the other three. So the model
 integrates to one, and log evidence means something.
 
-The four shares and two widths can be learned from readings at known poses: see `pfkit.beam_fit`.
+The four shares and two widths can be learned from readings at known poses: see `beam_fit`.
 
 Thirty beams are not thirty independent witnesses: a person or a wrong wall spoils several at
 once. Use few, or wrap the model in `robust.Tempered`.
@@ -42,9 +42,9 @@ from pfkit.errors import (
     require_positive_number,
     require_rng,
 )
-from pfkit.occupancy import OccupancyGrid
-from pfkit.raycast import RayCaster
-from pfkit.sensors import Sensor
+from pfkit.models.sensors import Sensor
+from pfkit.worlds.occupancy import OccupancyGrid
+from pfkit.worlds.raycast import RayCaster
 
 Array = NDArray[np.float64]
 

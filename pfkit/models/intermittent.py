@@ -20,7 +20,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import require_method
-from pfkit.sensors import Sensor
+from pfkit.models.sensors import Sensor
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ leave the robot free to circle about it: turn robot and heading together about t
 and nothing that was measured changes. It takes a second landmark to stop that.
 
 The identity s travels in the last row of z, so that each measurement finds its landmark. If
-the robot cannot tell its landmarks apart, see `pfkit.association`.
+the robot cannot tell its landmarks apart, see `association`.
 """
 
 from __future__ import annotations
@@ -19,6 +19,7 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pfkit.densities import error_density
 from pfkit.errors import (
     ParameterError,
     require_components,
@@ -28,8 +29,8 @@ from pfkit.errors import (
     require_positive_number,
 )
 from pfkit.geometry import _wrap, wrap
-from pfkit.maps import LandmarkMap
-from pfkit.sensors import Sensor, draw_errors, error_density, require_nu
+from pfkit.models.sensors import Sensor, draw_errors, require_nu
+from pfkit.worlds.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 

@@ -25,15 +25,15 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.distance import distance_field
 from pfkit.errors import (
     DataError,
     ParameterError,
     require_fraction,
     require_positive_number,
 )
-from pfkit.occupancy import OccupancyGrid, require_grid
-from pfkit.sensors import Sensor
+from pfkit.models.sensors import Sensor
+from pfkit.worlds.distance import distance_field
+from pfkit.worlds.occupancy import OccupancyGrid, require_grid
 
 Array = NDArray[np.float64]
 

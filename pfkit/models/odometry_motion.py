@@ -19,7 +19,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import ShapeError, require_components, require_non_negative
 from pfkit.geometry import between, wrap
-from pfkit.motion import draw_noise, log_noise
+from pfkit.models.motion import draw_noise, log_noise
 
 Array = NDArray[np.float64]
 

@@ -29,7 +29,7 @@ from pfkit.errors import (
     require_non_negative_number,
     require_positive_number,
 )
-from pfkit.sensors import Sensor
+from pfkit.models.sensors import Sensor
 
 Array = NDArray[np.float64]
 

@@ -31,6 +31,7 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pfkit.densities import NUMBER, error_density, gaussian
 from pfkit.errors import (
     DataError,
     ParameterError,
@@ -61,64 +62,10 @@ def how_many(z: ArrayLike | None) -> int:
     return 0 if 0 in shape else shape[1] if len(shape) > 1 else 1
 
 
-def log_gaussian(error: ArrayLike, sigma: float) -> Array:
-    r"""Log density of a zero-mean Gaussian.
-
-    .. math:: \log \mathcal N(e;\, 0, \sigma^2) = -\frac{e^2}{2\sigma^2} - \log(\sigma\sqrt{2\pi})
-
-    Parameters
-    ----------
-    error : array_like, any shape and unit
-    sigma : float, > 0, in the unit of the error
-
-    Returns
-    -------
-    array of the shape of the error
-
-    Raises
-    ------
-    ParameterError
-        If sigma is not positive, or an error is not a number.
-    """
-    return _gaussian(require_finite("error", error), _require_scale(sigma))
-
-
-def _gaussian(error: Array, sigma: float) -> Array:
-    log_p = np.square(error)
-    log_p *= -0.5 / sigma**2
-    log_p -= math.log(sigma * math.sqrt(2 * math.pi))
-    return log_p
-
-
-def error_density(error: Array, sigma: float, nu: float) -> Array:
-    r"""Log density of Student's t with scale sigma and nu degrees of freedom; inf: Gaussian.
-
-    .. math:: -\tfrac{\nu+1}{2}\log\Big(1+\frac{e^2}{\nu\sigma^2}\Big)
-              + \log\frac{\Gamma((\nu+1)/2)}{\Gamma(\nu/2)\,\sigma\sqrt{\pi\nu}}
-
-    Its tails are heavy: one wild measurement cannot veto a particle. For sensors, which have
-    checked their numbers.
-    """
-    if math.isinf(nu):
-        return _gaussian(error, sigma)
-    scaled = error / sigma
-    constant = math.lgamma((nu + 1) / 2) - math.lgamma(nu / 2) - 0.5 * math.log(math.pi * nu)
-    return constant - math.log(sigma) - 0.5 * (nu + 1) * np.log1p(scaled * scaled / nu)
-
-
 def require_nu(nu: float) -> None:
     """Raise `ParameterError` unless nu is a number > 0; inf is allowed, and means Gaussian."""
-    if not isinstance(nu, _NUMBER) or not nu > 0:
+    if not isinstance(nu, NUMBER) or not nu > 0:
         raise ParameterError(f"nu must be > 0 (inf for a Gaussian), got {nu!r}")
-
-
-def _require_scale(sigma: float) -> float:
-    if not isinstance(sigma, _NUMBER) or not 0 < sigma < math.inf:
-        raise ParameterError(f"sigma must be one number > 0, got {sigma!r}; 0 has no density")
-    return sigma
-
-
-_NUMBER = (float, int, np.floating, np.integer)
 
 
 def draw_errors(sigma: float, nu: float, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
@@ -239,7 +186,7 @@ class Position(Sensor):
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one position (2, ...) at states (D, ...): shape (...)."""
         sigma_x, sigma_y = self._sigmas  # type: ignore[attr-defined]
-        return _gaussian(zk[0] - pose[0], sigma_x) + _gaussian(zk[1] - pose[1], sigma_y)
+        return gaussian(zk[0] - pose[0], sigma_x) + gaussian(zk[1] - pose[1], sigma_y)
 
 
 @dataclass(frozen=True)

@@ -28,7 +28,7 @@ from pfkit.errors import (
     require_non_negative_number,
     require_positive_number,
 )
-from pfkit.motion import draw_noise, drive_arc
+from pfkit.models.motion import draw_noise, drive_arc
 
 Array = NDArray[np.float64]
 

@@ -18,6 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from pfkit.densities import log_gaussian
 from pfkit.errors import (
     ParameterError,
     ShapeError,
@@ -25,10 +26,9 @@ from pfkit.errors import (
     require_finite,
     require_positive,
 )
-from pfkit.estimators import covariance
 from pfkit.geometry import wrap
-from pfkit.particles import Particles, require_particles
-from pfkit.sensors import log_gaussian
+from pfkit.particles.estimators import covariance
+from pfkit.particles.particle_set import Particles, require_particles
 
 Array = NDArray[np.float64]
 BLOCK = 2**20  # kernels evaluated at a time: bounds the memory, not the result

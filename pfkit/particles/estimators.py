@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError, require_fraction
 from pfkit.geometry import wrap
-from pfkit.particles import Particles, normalise, require_particles
+from pfkit.particles.particle_set import Particles, normalise, require_particles
 
 
 def mean_pose(bel: Particles) -> NDArray[np.float64]:

@@ -35,7 +35,7 @@ from pfkit.errors import (
     require_fraction,
     require_rng,
 )
-from pfkit.resampling import Resampler
+from pfkit.particles.resampling import Resampler
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]

@@ -19,8 +19,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import ShapeError, require_positive, whole_cells
-from pfkit.estimators import mean_pose
-from pfkit.particles import Particles, normalise, require_particles
+from pfkit.particles.estimators import mean_pose
+from pfkit.particles.particle_set import Particles, normalise, require_particles
 
 Array = NDArray[np.float64]
 Cell = tuple[int, ...]

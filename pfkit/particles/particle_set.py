@@ -147,7 +147,7 @@ def normalise(
     log_w : array (..., M)
         Normalised: logsumexp is zero over the last axis.
     log_sum : array (...)
-        The logarithm of the sum that was divided out. In `filters.update` it is the log of
+        The logarithm of the sum that was divided out. In `update` it is the log of
         the evidence.
 
     Raises

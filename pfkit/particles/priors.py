@@ -28,7 +28,7 @@ from pfkit.errors import (
     require_shape,
 )
 from pfkit.geometry import wrap
-from pfkit.particles import Particles, equal_log_weights
+from pfkit.particles.particle_set import Particles, equal_log_weights
 
 
 class SamplesPoses(Protocol):

@@ -25,9 +25,9 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import ParameterError, ShapeError, require_non_negative_number, require_rng
-from pfkit.estimators import covariance, deviation
 from pfkit.geometry import wrap
-from pfkit.particles import Particles, require_particles
+from pfkit.particles.estimators import covariance, deviation
+from pfkit.particles.particle_set import Particles, require_particles
 
 Array = NDArray[np.float64]
 

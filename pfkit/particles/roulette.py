@@ -21,7 +21,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
-from pfkit.resampling import Indices, _find, _read
+from pfkit.particles.resampling import Indices, _find, _read
 
 
 def roulette_wheel(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:

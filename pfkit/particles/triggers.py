@@ -18,10 +18,10 @@ The information is that of the weights over equal weights,
 zero after a resampling and log M when one particle holds everything. :math:`M e^{-KL}` counts
 particles as the ESS does, but a few heavy weights frighten it less.
 
-Whatever the trigger says, `filters.step` never resamples after a step without a measurement:
+Whatever the trigger says, `step` never resamples after a step without a measurement:
 nothing was learnt, and copies would be lost for nothing.
 
-Hand a trigger to `filters.step` or `history.run` as `threshold`; a plain number x there is
+Hand a trigger to `step` or `history.run` as `threshold`; a plain number x there is
 short for ``ess_below(x)``.
 """
 
@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import require_count, require_fraction, require_non_negative_number
-from pfkit.particles import Particles, require_particles
+from pfkit.particles.particle_set import Particles, require_particles
 
 Trigger = Callable[[Particles, int], "bool | np.bool_ | NDArray[np.bool_]"]
 

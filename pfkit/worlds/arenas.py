@@ -7,7 +7,7 @@ The symmetric worlds of lab 5 are the opposite: turned by a quarter (or a fifth)
 they look the same. If landmarks have no names, no measurement can tell a pose from its copies.
 Their bounding boxes are larger than the landmarks' own, so that every copy of the start lies
 inside: a prior that leaves a copy out has decided the question before the robot moved.
-`pfkit.symmetry` finds the copies.
+`symmetry` finds the copies.
 """
 
 from __future__ import annotations
@@ -16,8 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError, require_positive_number
-from pfkit.maps import LandmarkMap
-from pfkit.occupancy import OccupancyGrid
+from pfkit.worlds.maps import LandmarkMap
+from pfkit.worlds.occupancy import OccupancyGrid
 
 
 def arena() -> LandmarkMap:

@@ -9,7 +9,7 @@ adds information, and can even break a symmetry.
 Names are whole numbers that need not run from 0; those of a real arena are printed on its
 posts. `locate` looks them up in a sorted list, for any number of measurements at once, and an
 unknown name is an error: bar codes on a recorded log may belong to other robots.
-Where names are missing altogether, `pfkit.association` has to guess them.
+Where names are missing altogether, `association` has to guess them.
 """
 
 from __future__ import annotations

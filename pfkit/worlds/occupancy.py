@@ -10,7 +10,7 @@ Cells are counted as the axes run: column i along x, row j along y, row 0 at the
 origin. The origin is a pose: the whole map may stand askew in the world. `to_cells` and
 `from_cells` go to and fro, with fractions: cell (i, j) covers i to i + 1 and j to j + 1.
 
-Files are those of ROS's ``map_server`` (see `pfkit.map_files`).
+Files are those of ROS's ``map_server`` (see `map_files`).
 """
 
 from __future__ import annotations
@@ -35,7 +35,7 @@ from pfkit.errors import (
     require_rng,
     require_shape,
 )
-from pfkit.map_files import read_pgm, read_settings, write_pgm
+from pfkit.worlds.map_files import read_pgm, read_settings, write_pgm
 
 Array = NDArray[np.float64]
 

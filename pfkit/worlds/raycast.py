@@ -24,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import ShapeError, require_components, require_finite, require_number
-from pfkit.occupancy import OccupancyGrid, require_grid
+from pfkit.worlds.occupancy import OccupancyGrid, require_grid
 
 Array = NDArray[np.float64]
 

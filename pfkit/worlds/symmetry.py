@@ -8,7 +8,7 @@ landmarks have no names, a robot at x and one at :math:`g \oplus x` measure the 
 and they go on doing so when both drive by the same commands. Then a belief that starts out
 symmetric must stay symmetric: with G symmetries the exact posterior keeps G hypotheses of
 equal mass for ever. A particle filter does not. Resampling shuffles mass between the clusters
-until one holds all; `pfkit.genealogy` says how soon.
+until one holds all; `genealogy` says how soon.
 
 Mirror images do not count. A mirrored world has the same ranges, but left and right change
 places, so bearings have the wrong sign: a square has four hypotheses, not eight.
@@ -28,8 +28,8 @@ from pfkit.errors import (
     require_number,
 )
 from pfkit.geometry import compose, wrap
-from pfkit.maps import LandmarkMap
-from pfkit.particles import Particles
+from pfkit.particles.particle_set import Particles
+from pfkit.worlds.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 

@@ -35,7 +35,7 @@ def nees(history):
 
 def test_smoother_equals_least_squares_on_a_linear_world():
     """A random walk in the plane: the smoothed means solve one tridiagonal system."""
-    motion = pf.targets.FixedTarget(0.3)
+    motion = pf.FixedTarget(0.3)
     sensor = pf.Position(sigma=0.5)
     z = np.random.default_rng(0).standard_normal((2, 12)).cumsum(axis=1)
     T = z.shape[1]

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.localise import localise
+from pfkit.judging.localise import localise
 
-DATA = Path(__file__).parents[1] / "data"
+DATA = Path(__file__).parents[2] / "data"
 WORLD = pf.LandmarkMap(np.array([[0.0, 4.0], [3.0, -1.0]]), bounds=(-5, 5, -5, 5))
 
 

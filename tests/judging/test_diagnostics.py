@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.log import Log
+from pfkit.worlds.log import Log
 
 
 def rng(seed=0):

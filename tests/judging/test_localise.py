@@ -9,9 +9,9 @@ import pytest
 
 import pfkit as pf
 from pfkit.__main__ import main
-from pfkit.localise import calibrate_first, localise, reckon, score, settings_for
+from pfkit.judging.localise import calibrate_first, localise, reckon, score, settings_for
 
-DATA = Path(__file__).parents[1] / "data"
+DATA = Path(__file__).parents[2] / "data"
 
 
 @pytest.fixture(scope="module")
@@ -75,7 +75,7 @@ def test_a_global_start_survives_false_measurements(twin, monkeypatch):
         return score(log, track.estimate, settings.limit, track.first + 20).rmse
 
     assert (rmse() < 0.2).all()
-    monkeypatch.setattr("pfkit.localise._doubtful", lambda sensor, world: sensor)
+    monkeypatch.setattr("pfkit.judging.localise._doubtful", lambda sensor, world: sensor)
     assert rmse().mean() > 0.5  # what happens to a filter that believes every measurement
 
 

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit import study, worlds
+from pfkit import worlds
+from pfkit.judging import study
 
 WORLD = worlds.arena()
 MOTION = pf.VelocityMotion((0.02, 0.01, 0.01, 0.02))

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit import study
+from pfkit.judging import study
 
 
 @pytest.fixture

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.calibration import fit_bearing_bias, fit_odometry, fit_range_bias
+from pfkit.logs.calibration import fit_bearing_bias, fit_odometry, fit_range_bias
 
-DATA = Path(__file__).parents[1] / "data"
+DATA = Path(__file__).parents[2] / "data"
 
 
 def drive(speed=1.0, turn=1.0, delay=0.0, T=3000, dt=0.04, seed=0, noise=0.0):

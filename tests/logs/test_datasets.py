@@ -10,11 +10,11 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.datasets import find_folder, load_log, load_mrclam, load_plaza
-from pfkit.datasets.text import read_table
-from pfkit.datasets.timeline import held_controls, interpolate_poses
+from pfkit.logs.datasets import find_folder, load_log, load_mrclam, load_plaza
+from pfkit.logs.datasets.text import read_table
+from pfkit.logs.datasets.timeline import held_controls, interpolate_poses
 
-DATA = Path(__file__).parents[1] / "data"
+DATA = Path(__file__).parents[2] / "data"
 SMALL = {
     "Robot1_Odometry.dat": "# time v omega\n10.0 0.1 0.0\n10.5 0.2 0.1\n11.0 0.0 0.0\n",
     "Robot1_Measurement.dat": "10.25 63 2.0 0.5\n10.5 5 1.0 0.1\n10.5 25 3.0 -0.5\n",

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.odometry import informative_steps
+from pfkit.logs.odometry import informative_steps
 
 DRIFT = pf.Drift((0.02, 0.001, 1e-4), (0.05, 0.02, 1e-3))
 

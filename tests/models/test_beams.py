@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.beams import normal_cdf
+from pfkit.models.beams import normal_cdf
 
 WALLS = np.ones((22, 32), dtype=bool)
 WALLS[1:-1, 1:-1] = False

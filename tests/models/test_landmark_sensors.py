@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.sensors import error_density
+from pfkit.densities import error_density
 
 WORLD = pf.LandmarkMap(np.array([[0.0, 4.0, -2.0, 7.0], [3.0, -1.0, -5.0, 2.5]]), [6, 13, 17, 4])
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.sensors import error_density
+from pfkit.densities import error_density
 
 GRID = np.linspace(-60, 60, 240_001)
 

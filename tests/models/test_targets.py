@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.targets import CircleTarget, FixedTarget, HeadingTarget, LineTarget
+from pfkit.models.targets import CircleTarget, FixedTarget, HeadingTarget, LineTarget
 
 U = (2.0, 0.1, 1.5)
 MODELS = [

@@ -57,7 +57,7 @@ def test_kde_approaches_the_true_density():
 def test_blocks_do_not_change_the_result(monkeypatch):
     bel, points = pf.from_weights(rng().normal(size=(2, 50))), rng(1).normal(size=(2, 4, 30))
     whole = pf.kde(bel, points)
-    monkeypatch.setattr("pfkit.density.BLOCK", 130)
+    monkeypatch.setattr("pfkit.particles.density.BLOCK", 130)
     np.testing.assert_allclose(pf.kde(bel, points), whole, rtol=1e-12)
     assert whole.shape == (4, 30)
 

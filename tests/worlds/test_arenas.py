@@ -9,7 +9,7 @@ import pytest
 import pfkit as pf
 from pfkit import worlds
 
-ROOT = Path(__file__).resolve().parents[1]
+ROOT = Path(__file__).resolve().parents[2]
 STILL = pf.VelocityMotion((0.0,) * 4)
 
 

@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.map_files import read_pgm, read_settings, write_pgm
+from pfkit.worlds.map_files import read_pgm, read_settings, write_pgm
 
 GOOD = """image: room.pgm
 resolution: 0.050000

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.raycast import empty_squares
+from pfkit.worlds.raycast import empty_squares
 
 
 def traverse(occupied, x, y, direction, reach):
@@ -104,7 +104,7 @@ def test_shapes_blocks_and_angles_for_each_filter(monkeypatch):
         np.testing.assert_array_equal(lengths[:, b], each)
     one = caster.cast(pose[:, 1, 3], angles[:, 1, 0], 5.0)
     np.testing.assert_array_equal(one, lengths[:, 1, 3])
-    monkeypatch.setattr("pfkit.raycast.BLOCK", 10)
+    monkeypatch.setattr("pfkit.worlds.raycast.BLOCK", 10)
     np.testing.assert_array_equal(caster.cast(pose, angles, 5.0), lengths)
 
 

@@ -40,8 +40,9 @@ PARTS = CACHE / "parts"
 PALETTE = ROOT / "pfkit" / "palette.py"
 OURS = (ROOT / "pfkit" / "explore" / "web", ROOT / "book" / "live")
 RUNTIME = ("pyodide.js", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip")
-# The edge of pfkit needs matplotlib, ipywidgets or nbformat, which the page does not have.
-NOT_IN_PAGE = ("plotting.py", "widgets.py", "labs/grade/", "labs/release.py")
+EDGE: dict[str, tuple[str, ...]] = runpy.run_path(str(ROOT / "pfkit" / "rooms.py"))["EDGE"]
+# What needs matplotlib, ipywidgets or nbformat stays behind: the page does not have them.
+NOT_IN_PAGE = tuple(part.replace(".", "/") for part, needs in EDGE.items() if needs)
 # What only NumPy's own developers need. (Its import does need _multiarray_tests*.so.)
 NOT_NEEDED = re.compile(r"/(tests|include|f2py|distutils|_examples|_pyinstaller)/|\.(pyi|a)$")
 HOOK = '''\
@@ -159,7 +160,7 @@ def pfkit_files() -> dict[str, bytes]:
     return {
         "pfkit/" + p.relative_to(package).as_posix(): p.read_bytes()
         for p in names
-        if not p.relative_to(package).as_posix().startswith(NOT_IN_PAGE)
+        if not p.relative_to(package).with_suffix("").as_posix().startswith(NOT_IN_PAGE)
         and "__pycache__" not in p.parts
     } | {p.relative_to(ROOT).as_posix(): p.read_bytes() for p in logs}
 

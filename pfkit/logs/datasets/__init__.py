@@ -13,10 +13,10 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
-from pfkit.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
-from pfkit.datasets.plaza import is_plaza, read_plaza
 from pfkit.errors import DataError, as_path
-from pfkit.log import Log
+from pfkit.logs.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
+from pfkit.logs.datasets.plaza import is_plaza, read_plaza
+from pfkit.worlds.log import Log
 
 __all__ = ["find_folder", "load_log", "load_mrclam", "load_plaza"]
 
@@ -43,7 +43,7 @@ def find_folder(name: str | Path | None, is_layout=None) -> Path:
     fits = is_layout or (lambda folder: is_mrclam(folder) or is_plaza(folder))
     if name is not None and as_path("folder", name).exists():
         return Path(name)
-    data = Path(__file__).parents[2] / "data"
+    data = Path(__file__).parents[3] / "data"
     roots = [Path(os.environ["PFKIT_DATA"])] if os.environ.get("PFKIT_DATA") else []
     for root in (*roots, data):
         inside = sorted(root.iterdir()) if root.is_dir() else []

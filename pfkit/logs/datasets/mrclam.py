@@ -21,11 +21,11 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.datasets.text import identities, read_table, read_truth, refuse
-from pfkit.datasets.timeline import merge
 from pfkit.errors import DataError
-from pfkit.log import Log
-from pfkit.maps import LandmarkMap
+from pfkit.logs.datasets.text import identities, read_table, read_truth, refuse
+from pfkit.logs.datasets.timeline import merge
+from pfkit.worlds.log import Log
+from pfkit.worlds.maps import LandmarkMap
 
 ODOMETRY = re.compile(r"(?P<prefix>.*_)Odometry\.dat(\.gz)?")
 MARGIN = 1.0  # metres by which the robots' area reaches beyond the landmarks
@@ -84,7 +84,7 @@ def mrclam_files(folder: Path, robot: int | None = None) -> Files:
 def read_mrclam(
     files: Files, source: str, drop_unknown: bool = False, need_truth: bool = True
 ) -> Log:
-    """Read and join the five files; see `pfkit.datasets.load_mrclam`."""
+    """Read and join the five files; see `pfkit.logs.datasets.load_mrclam`."""
     command = read_table(files.odometry, ("time", "v", "omega"))
     seen = read_table(files.measurement, ("time", "barcode", "range", "bearing"))
     refuse(files.measurement, seen[2] < 0, seen[2], "range must be >= 0, got {:g}; delete the line")

@@ -17,11 +17,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.datasets.text import identities, read_table, read_truth, refuse
-from pfkit.datasets.timeline import merge
 from pfkit.geometry import wrap
-from pfkit.log import Log
-from pfkit.maps import LandmarkMap
+from pfkit.logs.datasets.text import identities, read_table, read_truth, refuse
+from pfkit.logs.datasets.timeline import merge
+from pfkit.worlds.log import Log
+from pfkit.worlds.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 MARGIN = 20.0  # metres by which the lawn reaches beyond the beacons
@@ -34,7 +34,7 @@ def is_plaza(folder: Path) -> bool:
 
 
 def read_plaza(folder: Path, source: str, need_truth: bool = True) -> Log:
-    """Read and join the four files; see `pfkit.datasets.load_plaza`."""
+    """Read and join the four files; see `pfkit.logs.datasets.load_plaza`."""
     rows = read_table(folder / "odometry.txt", ("time", "distance", "turn"))
     seen = read_table(folder / "ranges.txt", ("time", "sender", "beacon", "range"))
     beacons = read_table(folder / "beacons.txt", ("beacon", "x", "y"))

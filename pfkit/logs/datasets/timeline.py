@@ -14,8 +14,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.geometry import wrap
-from pfkit.log import Log
-from pfkit.maps import LandmarkMap
+from pfkit.worlds.log import Log
+from pfkit.worlds.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 BLIND = 0.5  # seconds from the nearest sample beyond which there is no truth
