@@ -35,7 +35,7 @@ QUIET = {
     "PFKIT_WIDGETS": "off",  # explorables leave a line of text in a stored notebook, no widget
 }
 THREADS = ("OMP_NUM_THREADS", "OPENBLAS_NUM_THREADS", "MKL_NUM_THREADS")
-# Says where a name is defined. A name has one definition (tests/test_rooms.py), so that no output can
+# Says where a name is defined. A name has one definition (tests/test_rooms.py), so no output can
 # change with this file alone, and a new name makes no notebook stale.
 NAMES = "pfkit/rooms.py"
 COLOURS = 128
