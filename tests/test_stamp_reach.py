@@ -23,11 +23,12 @@ SOURCES = {name: path.read_text(encoding="utf-8") for name, path in FILES.items(
 
 def named(source: str) -> set[str]:
     """The modules that some code names: by import, or as a name of the package."""
-    code = "\n".join(line for line in source.splitlines() if not line.lstrip().startswith("%"))
-    used = {full.removeprefix("pfkit.") for full, _ in imports(code) if full.startswith("pfkit.")}
-    used |= {HOME[n].removeprefix("pfkit.") for n in re.findall(r"\bpf\.(\w+)", code) if n in HOME}
-    used |= {"worlds.arenas"} if "worlds." in code else set()
-    used |= {"judging.study"} if "pf.study" in code else set()
+    used = {full.removeprefix("pfkit.") for full, _ in imports(source) if full.startswith("pfkit.")}
+    used |= {
+        HOME[n].removeprefix("pfkit.") for n in re.findall(r"\bpf\.(\w+)", source) if n in HOME
+    }
+    used |= {"worlds.arenas"} if "worlds." in source else set()
+    used |= {"judging.study"} if "pf.study" in source else set()
     return {longest(name, SOURCES) for name in used} & set(SOURCES)
 
 
@@ -42,7 +43,8 @@ def reach(start: set[str]) -> set[str]:
 
 
 def code_of(notebook: dict) -> str:
-    return "\n".join(cell["source"] for cell in stamps.code_cells(notebook))
+    lines = "\n".join(cell["source"] for cell in stamps.code_cells(notebook)).splitlines()
+    return "\n".join(line for line in lines if not line.startswith("%"))
 
 
 def stale_after_an_edit(module: str, monkeypatch) -> set[str]:
