@@ -8,9 +8,7 @@ from pfkit.labs import Choice, Lab, Numeric, Prediction, Question, Text, code, e
 PREDICT = Question("Predictions")
 
 CELLS = 10
-
 DOORS = np.isin(np.arange(CELLS), (1, 2, 6))
-
 KERNEL = pf.shift_kernel(1, undershoot=0.1, overshoot=0.1)
 
 twice = Prediction("""Robots that count each look twice and say 90 %
@@ -36,7 +34,6 @@ moved = Numeric(
     tol=0.002,
     names=("cell 1", "cell 2", "cell 3", "cell 4"),
 )
-
 moved.wrong("""backwards: moves the belief to the left
     Which way does the robot drive?
     What was in cell 1 is mostly in cell 2 afterwards.
@@ -55,7 +52,6 @@ looked = Numeric(
     tol=0.004,
     names=("belief in cell 3", "sum"),
 )
-
 looked.wrong("""door: uses the probabilities of the report 'door'
     What did the detector say?
     It said 'no door': one minus each of the others.
@@ -138,16 +134,12 @@ correct.wrong("""likelihood-only: normalises the likelihood and forgets the beli
     What did the robot know before the look?
     Multiply by the old belief first.
     joint = bel * likelihood""")(lambda bel, like: (like / like.sum(), like.sum()))
-
-
-@correct.wrong("""averages belief and likelihood instead of multiplying them
+correct.wrong("""average: averages belief and likelihood instead of multiplying them
     A cell that the report rules out: what should its belief be?
     A likelihood of zero must give zero. Averages do not.
-    joint = bel * likelihood""")
-def average(bel, like):
-    return ((bel + like) / (bel + like).sum(), (bel + like).sum())
-
-
+    joint = bel * likelihood""")(
+    lambda bel, like: ((bel + like) / (bel + like).sum(), (bel + like).sum())
+)
 correct.wrong("""eta: returns the normaliser eta, one over the evidence
     Can a probability exceed one?
     The evidence is the sum itself.
@@ -156,14 +148,6 @@ correct.wrong("""eta: returns the normaliser eta, one over the evidence
 )
 
 MOVES = {0: 0.1, 1: 0.7, 2: 0.2}
-
-
-def _moves_right(f):
-    return bool(np.allclose(f(np.eye(5)[1], {1: 1.0}), np.eye(5)[2]))
-
-
-def _on_the_ring(f):
-    return bool(np.allclose(f(np.eye(5)[4], {1: 1.0}), np.eye(5)[0]))
 
 
 def _sum_rule(f):
@@ -183,8 +167,14 @@ def predict_line(bel, moves):
     return sum(p * np.roll(bel, cells) for cells, p in moves.items())
 
 
-predict_line.holds("a sure move of one cell moves the belief one cell on", _moves_right)
-predict_line.holds("the last cell's neighbour is the first", _on_the_ring)
+predict_line.holds(
+    "a sure move of one cell moves the belief one cell on",
+    lambda f: bool(np.allclose(f(np.eye(5)[1], {1: 1.0}), np.eye(5)[2])),
+)
+predict_line.holds(
+    "the last cell's neighbour is the first",
+    lambda f: bool(np.allclose(f(np.eye(5)[4], {1: 1.0}), np.eye(5)[0])),
+)
 predict_line.holds("every cell is the sum over where the robot may have come from", _sum_rule)
 predict_line.holds(
     "the belief still sums to one", lambda f: bool(np.isclose(np.sum(f(_belief(4)[0], MOVES)), 1))

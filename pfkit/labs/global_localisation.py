@@ -33,7 +33,6 @@ hand = Numeric(
     tol=0.006,
     names=("probability that all three are kept", "rooms kept on average"),
 )
-
 hand.wrong("""one-draw: counts one draw where the scheme makes three
     How many particles are drawn?
     A room is lost only if all three draws miss it.
@@ -70,7 +69,6 @@ unnamed = Numeric(
     tol=0.1,
     names=("two unnamed landmarks", "forty landmarks in rings of five"),
 )
-
 unnamed.wrong("""mirrors: counts mirror images as well
     What happens to the bearings in a mirror?
     A mirror image swaps left and right.
@@ -93,7 +91,6 @@ founders = Numeric(
     0.368,
     tol=0.004,
 )
-
 founders.wrong("""not-empty: is the chance that it is not empty
     Which of the two did the question ask for?
     P(empty) + P(not empty) = 1.
@@ -116,7 +113,6 @@ nats = Numeric(
     tol=0.005,
     unit="nats",
 )
-
 nats.wrong("""bits: is in bits
     Which logarithm?
     Nats come from the natural logarithm.
@@ -138,10 +134,6 @@ POSE = np.array([2.0, 1.0, 2.5])
 def _shape(f):
     found = np.asarray(f(POSE, 5, np.zeros(2)), dtype=float)
     return True if found.shape == (3, 5) else f"shape {found.shape}, expected (3, 5)"
-
-
-def _first_is_itself(f):
-    return np.allclose(np.asarray(f(POSE, 4, CENTRE))[:, 0], POSE)
 
 
 def _in_square(f):
@@ -182,7 +174,10 @@ def copies(pose, n=4, centre=CENTRE):
 
 
 copies.holds("shape (3, n)", _shape)
-copies.holds("the first copy is the pose itself", _first_is_itself)
+copies.holds(
+    "the first copy is the pose itself",
+    lambda f: np.allclose(np.asarray(f(POSE, 4, CENTRE))[:, 0], POSE),
+)
 copies.holds("a robot at any copy measures the same set of ranges and bearings", _in_square)
 copies.holds("the copies stand at n different places", _different)
 copies.holds("headings lie in (-pi, pi]", _wrapped)
@@ -309,12 +304,6 @@ def _even(x):
     return True if off < 0.135 else f"shares {shares.round(2).tolist()}"
 
 
-def _both_sizes(f, rng, runs):
-    return [
-        [f(1000, a), f(10_000, b)] for a, b in zip(rng.spawn(runs), rng.spawn(runs), strict=True)
-    ]
-
-
 @experiment(
     """Hypotheses alive after one look, with 1,000 and with 10,000 particles
     Draw a uniform prior, weigh it once, count the copies with more than 1 % of the mass.
@@ -326,7 +315,14 @@ def _both_sizes(f, rng, runs):
     pool=200,
     claim="more particles found more of the four hypotheses, and 1,000 do not found them all",
     test="mean at 10,000 above mean at 1,000 by 1 or more; mean at 1,000 below 2.4",
-    measure=_both_sizes,
+    measure=(
+        lambda f, rng, runs: (
+            [
+                [f(1000, a), f(10_000, b)]
+                for a, b in zip(rng.spawn(runs), rng.spawn(runs), strict=True)
+            ]
+        )
+    ),
     margin="6 standard errors: the difference is 2.0 with sd 1.05 over 40 pairs; the mean, 1.5",
 )
 def alive_x(M, rng, floor=0.01, named=False):

@@ -30,7 +30,6 @@ hand = Numeric(
     tol=0.006,
     names=("room 1", "room 2", "room 3"),
 )
-
 hand.wrong("""not-normalised: is not divided by the sum of the weights
     Do they sum to one?
     Their sum is 4.7.
@@ -52,7 +51,6 @@ ess = Numeric(
     2.86,
     tol=0.02,
 )
-
 ess.wrong("""by-room: squares the weights of rooms, not of draws
     How many draws are there?
     Room 3 holds three draws; square each before you add.
@@ -82,7 +80,6 @@ threshold = Numeric(
     999.6,
     tol=0.06,
 )
-
 threshold.wrong("""no-scale: leaves the scale of the weights out: nothing is left of the
          variance
     Weights are of size 1 / M. Did you include M (M - 1)?

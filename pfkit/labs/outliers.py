@@ -30,7 +30,6 @@ byhand = Numeric(
     tol=0.003,
     names=("Gaussian", "mixture"),
 )
-
 byhand.wrong("""not-normalised: is not divided by the sum over the particles
     Do the five weights sum to one?
     Add all five.
@@ -52,7 +51,6 @@ peak = Numeric(
     tol=8.0,
     unit="px^2",
 )
-
 peak.wrong("""sd: is the standard deviation, not the variance
     Which of the two is asked?
     Do not take the root.
@@ -82,10 +80,6 @@ def _mixes(f):
     return bool(np.allclose(f(LOG_P.copy(), 0.3, 50.0), want))
 
 
-def _floor(f):
-    return bool(np.allclose(f(np.full(3, -1e4), 0.2, 100.0), np.log(0.2 / 100)))
-
-
 @code(
     """The mixture in logarithms
     A sum of two densities, each as a logarithm: np.logaddexp.
@@ -98,7 +92,10 @@ def mixture(log_p, epsilon, A):
 
 
 mixture.holds("(1 - epsilon) p + epsilon / A, as a logarithm", _mixes)
-mixture.holds("hopeless particles get the floor, not zero", _floor)
+mixture.holds(
+    "hopeless particles get the floor, not zero",
+    lambda f: bool(np.allclose(f(np.full(3, -1e4), 0.2, 100.0), np.log(0.2 / 100))),
+)
 mixture.holds(
     "a density of exp(-10000) gives no nan",
     lambda f: bool(np.isfinite(f(np.full(2, -1e4), 0.5, 1.0)).all()),
@@ -129,12 +126,6 @@ mixture.wrong("""maximum: takes the larger of the two parts
 LOG_W = np.log(np.array([0.5, 0.2, 0.2, 0.1]))
 
 
-def _rightly(f):
-    return bool(
-        np.isclose(f(LOG_W, LOG_P, 0.3, 50.0), responsibility(LOG_W, LOG_P, 0.3, 50.0), atol=1e-9)
-    )
-
-
 @code(
     """Probability that a report was false
     L is the weighted mean of exp(log_p).
@@ -147,7 +138,16 @@ def responsibility(log_w, log_p, epsilon, A):
     return (epsilon / A) / ((1 - epsilon) * L + epsilon / A)
 
 
-responsibility.holds("Bayes' rule on the label, with weights", _rightly)
+responsibility.holds(
+    "Bayes' rule on the label, with weights",
+    (
+        lambda f: bool(
+            np.isclose(
+                f(LOG_W, LOG_P, 0.3, 50.0), responsibility(LOG_W, LOG_P, 0.3, 50.0), atol=1e-9
+            )
+        )
+    ),
+)
 responsibility.holds(
     "a hopeless report is false for certain",
     lambda f: bool(np.isclose(f(LOG_W, np.full(4, -800.0), 0.3, 50.0), 1)),
@@ -160,16 +160,13 @@ responsibility.wrong("""honest: is the probability of being honest
     Which label is asked for?
     One minus yours.
     epsilon / A goes into the numerator.""")(lambda *a: 1 - responsibility(*a))
-
-
-@responsibility.wrong("""takes the plain mean over the particles and forgets their weights
+responsibility.wrong("""unweighted: takes the plain mean over the particles and forgets their
+         weights
     Does every particle count the same?
     L is a weighted mean.
-    np.sum(np.exp(log_w + log_p))""")
-def unweighted(log_w, log_p, e, A):
-    return responsibility(np.full(log_w.size, -np.log(log_w.size)), log_p, e, A)
-
-
+    np.sum(np.exp(log_w + log_p))""")(
+    lambda log_w, log_p, e, A: responsibility(np.full(log_w.size, -np.log(log_w.size)), log_p, e, A)
+)
 responsibility.wrong("""best: looks at the best particle only
     The cloud is asked, not its best member.
     Average the likelihood over the set.
@@ -180,9 +177,7 @@ responsibility.wrong("""best: looks at the best particle only
 BREAK = Question("Experiments")
 
 MOTION = pf.CircleTarget(sigma=1.4, sigma_theta=0.01)
-
 FALSE_HALF = target.target_log("circle", "outliers")[:60]
-
 CLEAN = target.target_log("circle", "low")[:60]
 
 

@@ -51,7 +51,6 @@ def _print_update(f):
 
 
 W = np.array([0.05, 0.25, 0.4, 0.1, 0.2])
-
 STATE = np.array([[1.0, 2, 3, 4, 5], [10, 20, 30, 40, 50], [0.1, 0.2, 0.3, 0.4, 0.5]])
 
 
@@ -118,7 +117,6 @@ hand = Numeric(
     0.096,
     tol=0.002,
 )
-
 hand.wrong("""not-normalised: is a likelihood that was not divided by the sum
     Weights of a set sum to one.
     Add the five likelihoods.
@@ -140,7 +138,6 @@ ess = Numeric(
     4.67,
     tol=0.03,
 )
-
 ess.wrong("""no-inverse: is the sum of squares itself
     How many particles is that? At least one always matters.
     Turn the fraction over.

@@ -27,7 +27,6 @@ door = Numeric(
     0.2 / 0.35,
     tol=0.005,
 )
-
 door.wrong("""forgets-the-prior: is how often a door makes the detector fire, not how often
          firing means a door
     Three quarters of the corridor are walls. Where are they in your answer?
@@ -52,7 +51,6 @@ spread = Numeric(
     tol=0.0005,
     names=("variance [m²]", "sd of the mean [m]"),
 )
-
 spread.wrong("""divides-by-n: divides the standard deviation by 100 instead of by its root
     Which of the two gets 100 times smaller, variance or standard deviation?
     The variance does. Take the root afterwards.
@@ -78,7 +76,6 @@ landmark = Numeric(
     tol=0.01,
     names=("x [m]", "y [m]", "bearing [rad]"),
 )
-
 landmark.wrong("""bearing-from-the-map: measures the bearing from the x axis of the map
     Where does the robot look?
     A bearing is the direction on the map minus the robot's heading.

@@ -20,7 +20,6 @@ held = Numeric(
     0.14,
     tol=0.002,
 )
-
 held.wrong("""one-command: uses the command at the first sighting for the whole time
     Does the robot get no new command for 0.9 s?
     Two more rows arrive, at 0.4 and at 1.0 s.
@@ -42,7 +41,6 @@ lever = Numeric(
     2.09,
     tol=0.02,
 )
-
 lever.wrong("""degrees: takes the sine of 3 radians
     Which unit does np.sin want?
     3 degrees are 3 pi / 180 rad.

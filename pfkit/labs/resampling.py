@@ -32,7 +32,6 @@ hand = Numeric(
     tol=0.01,
     names=("particle 1", "particle 2", "particle 3", "particle 4", "particle 5"),
 )
-
 hand.wrong("""indices: lists which particle each tooth picks, not how many copies each particle
          gets
     Do your five numbers add up to five?
@@ -52,7 +51,6 @@ variance = Numeric(
     tol=0.002,
     names=("multinomial", "systematic"),
 )
-
 variance.wrong("""no-m: forgets the factor M of the binomial variance
     How many points are thrown?
     Five points, each hits with .25.
@@ -71,7 +69,6 @@ survive = Numeric(
     tol=0.002,
     names=("multinomial", "systematic"),
 )
-
 survive.wrong("""sign: has the sign error of the printed formula
     Should a heavier particle be missed more often?
     A point misses with 1 - w = 1 - 1/M - eps.
@@ -149,16 +146,12 @@ comb.holds("M w copies on average, within 5 standard errors over 300 draws", _un
 comb.holds("floor or ceiling of M w copies, every time", _floor_ceil)
 comb.holds("a weight of zero gets no copy", _zeros)
 comb.holds("weights that sum to 0.9997 are no trouble", _rough)
-
-
-@comb.wrong("""picks the neighbour of the particle under the tooth
+comb.wrong("""off-by-one: picks the neighbour of the particle under the tooth
     Which particle does a tooth at .04 touch?
     The summed weights are right edges: the first is w of particle 0.
-    No leading zero in the edges, and no + 1.""")
-def off_by_one(w, rng):
-    return np.minimum(np.searchsorted(np.append(0, _edges(w)), _teeth(w, rng)), w.size - 1)
-
-
+    No leading zero in the edges, and no + 1.""")(
+    lambda w, rng: np.minimum(np.searchsorted(np.append(0, _edges(w)), _teeth(w, rng)), w.size - 1)
+)
 comb.wrong("""stratified: is stratified: it draws a random number for each tooth
     How many random numbers does a comb need?
     All teeth of a comb share one offset.

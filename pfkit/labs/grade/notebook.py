@@ -10,13 +10,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pfkit.labs import catalogue
-from pfkit.labs.grade.cells import (
-    code_cells,
-    lab_calls,
-    names_changed,
-    names_needed,
-    surely_bound,
-)
+from pfkit.labs.grade.cells import code_cells, lab_calls, names_changed, names_needed, surely_bound
 from pfkit.labs.grade.submission import Answers
 from pfkit.labs.lab import Lab
 

@@ -12,7 +12,6 @@ from pfkit.labs.target import anywhere, around, target_log, track
 Q7 = Question("No process noise, fixed target")
 
 FILM = target_log("fixed", "low")
-
 HOME = FILM.start[:2]
 
 
@@ -99,11 +98,6 @@ q7c = Choice("""Why is the ESS blind to this?
 
 Q8 = Question("No resampling")
 
-
-def _three(f, rng, runs):
-    return shaped(f(rng, runs), 3, runs).T
-
-
 q8a = Prediction("""Order of the errors: plain mean (A) and weighted mean (B) without
          resampling, resampled (C)
     a* A far worse than B, B far worse than C
@@ -125,7 +119,7 @@ q8a = Prediction("""Order of the errors: plain mean (A) and weighted mean (B) wi
     runs=10,
     pool=250,
     margin="201 (sd 2.7), 19.8 (2.3), .573 (.006) px: at least 6 standard errors",
-    measure=_three,
+    measure=lambda f, rng, runs: shaped(f(rng, runs), 3, runs).T,
 )
 def three_filters(rng, runs):
     """Mean errors of frames 100 to 200: plain and weighted without resampling; resampled."""

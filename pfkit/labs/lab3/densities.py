@@ -79,20 +79,22 @@ def _d(x, samples):
     return x[:, None] - samples[None, :]
 
 
-@kde.wrong("""averages over x instead of over the samples
+kde.wrong("""wrong-axis: averages over x instead of over the samples
     How many numbers come back for 7 places and 4 samples?
     At each place, average over the samples.
-    With x[:, None] - samples, take the mean over axis 1.""")
-def wrong_axis(x, samples, h):
-    return np.mean(np.exp(-0.5 * (_d(x, samples) / h) ** 2), axis=0) / (np.sqrt(2 * np.pi) * h)
-
-
-@kde.wrong("""does not divide by the bandwidth, so it integrates to h
+    With x[:, None] - samples, take the mean over axis 1.""")(
+    lambda x, samples, h: (
+        np.mean(np.exp(-0.5 * (_d(x, samples) / h) ** 2), axis=0) / (np.sqrt(2 * np.pi) * h)
+    )
+)
+kde.wrong("""no-bandwidth: does not divide by the bandwidth, so it integrates to h
     Integrate it numerically for h = .5 and for h = 2.
     A wider kernel must be lower.
-    Divide by h sqrt(2 pi).""")
-def no_bandwidth(x, samples, h):
-    return np.mean(np.exp(-0.5 * (_d(x, samples) / h) ** 2), axis=1) / np.sqrt(2 * np.pi)
+    Divide by h sqrt(2 pi).""")(
+    lambda x, samples, h: (
+        np.mean(np.exp(-0.5 * (_d(x, samples) / h) ** 2), axis=1) / np.sqrt(2 * np.pi)
+    )
+)
 
 
 @kde.wrong("""adds the kernels without dividing by their number
@@ -103,20 +105,22 @@ def summed(x, samples, h):
     return np.sum(np.exp(-0.5 * (_d(x, samples) / h) ** 2), axis=1) / (np.sqrt(2 * np.pi) * h)
 
 
-@kde.wrong("""uses h as a variance
+kde.wrong("""h-as-variance: uses h as a variance
     Take one sample at 0 and h = 2. Where has the density fallen to 61 %?
     h is a standard deviation, in the unit of x.
-    Exponent: -(x - s)^2 / (2 h^2).""")
-def h_as_variance(x, samples, h):
-    return np.mean(np.exp(-0.5 * _d(x, samples) ** 2 / h), axis=1) / np.sqrt(2 * np.pi * h)
-
-
-@kde.wrong("""lacks the 1/2 in the exponent
+    Exponent: -(x - s)^2 / (2 h^2).""")(
+    lambda x, samples, h: (
+        np.mean(np.exp(-0.5 * _d(x, samples) ** 2 / h), axis=1) / np.sqrt(2 * np.pi * h)
+    )
+)
+kde.wrong("""no-half: lacks the 1/2 in the exponent
     Integrate it. You get .707.
     Compare your exponent with the Gaussian's, factor by factor.
-    Exponent: -(x - s)^2 / (2 h^2).""")
-def no_half(x, samples, h):
-    return np.mean(np.exp(-((_d(x, samples) / h) ** 2)), axis=1) / (np.sqrt(2 * np.pi) * h)
+    Exponent: -(x - s)^2 / (2 h^2).""")(
+    lambda x, samples, h: (
+        np.mean(np.exp(-((_d(x, samples) / h) ** 2)), axis=1) / (np.sqrt(2 * np.pi) * h)
+    )
+)
 
 
 @experiment(

@@ -12,9 +12,7 @@ from pfkit.labs.target import anywhere, around, target_log, track
 P3 = Question("Deprivation")
 
 FILM = target_log("fixed", "low")
-
 HOME = FILM.start[:2]
-
 SIZES = (25, 100, 400)
 
 
@@ -159,19 +157,13 @@ ess_history.holds(
     "with resampling its median lies between 800 and 950",
     lambda x: 800 < np.median(x[:, 0, 5:]) < 950 or f"the median is {np.median(x[:, 0, 5:]):.0f}",
 )
-
-
-@ess_history.wrong(
-    """measures the ESS after resampling, when all weights are equal
+ess_history.wrong(
+    """after-resampling: measures the ESS after resampling, when all weights are equal
     Your ESS with resampling is always the number of particles. Why?
     Equal weights have ESS M, whatever happened before.
     Take the ESS after the update and before the resampling.""",
     when=lambda x: np.median(x[:, 0]) > 999,
-)
-def after_resampling(r, rng, runs):
-    return np.full((50, runs), 1000.0) if r else ess_history(False, rng, runs)
-
-
+)(lambda r, rng, runs: np.full((50, runs), 1000.0) if r else ess_history(False, rng, runs))
 ess_history.wrong("""never-resampled: does not resample in either case
     Your two curves look alike.
     Does your function use its first argument?

@@ -115,7 +115,6 @@ q2a = Numeric(
     tol=0.5,
     unit="px",
 )
-
 q2a.wrong("""inverted: is omega0 / v0
     Check the unit: rad/px is not a length.
     A faster target on the same turn rate draws a larger circle.

@@ -78,16 +78,12 @@ diffuse.wrong("""noise-alone: returns the noise without the state
     state + sigma * rng.standard_normal(state.shape).""")(
     lambda state, sigma, rng: sigma * rng.standard_normal(state.shape)
 )
-
-
-@diffuse.wrong("""takes its chance from elsewhere than rng, or the same at each call
+diffuse.wrong("""own-generator: takes its chance from elsewhere than rng, or the same at each call
     Call it twice with one rng. Are the two clouds different, as they must be?
     One generator, passed on, makes a run that is random and can be repeated.
-    Draw with rng, and make no generator of your own.""")
-def own_generator(state, sigma, rng):
-    return state + sigma * np.random.default_rng(0).standard_normal(state.shape)
-
-
+    Draw with rng, and make no generator of your own.""")(
+    lambda state, sigma, rng: state + sigma * np.random.default_rng(0).standard_normal(state.shape)
+)
 diffuse.wrong("""root: scales the noise by the root of sigma
     Measure the spread for sigma = 3. Do you get 3?
     sigma is a standard deviation already: no root is needed.
@@ -107,16 +103,12 @@ diffuse.wrong("""variance: scales the noise by sigma squared
     Multiply by sigma, not by its square.""")(
     lambda state, sigma, rng: state + sigma**2 * rng.standard_normal(state.shape)
 )
-
-
-@diffuse.wrong("""adds noise to x only
+diffuse.wrong("""one-axis: adds noise to x only
     Look at the spread of y.
     The state has two components, and both are uncertain.
-    Draw noise of the shape of the state.""")
-def one_axis(state, sigma, rng):
-    return state + np.array([[sigma], [0.0]]) * rng.standard_normal(state.shape)
-
-
+    Draw noise of the shape of the state.""")(
+    lambda state, sigma, rng: state + np.array([[sigma], [0.0]]) * rng.standard_normal(state.shape)
+)
 diffuse.wrong("""same-draw: gives x and y the same draw, so the cloud spreads along a diagonal
     Plot y against x. What shape do you see?
     x and y err independently.

@@ -40,7 +40,6 @@ p8a = Numeric(
     tol=1.5,
     unit="particles",
 )
-
 p8a.wrong("""two-sided: takes the two-sided quantile 2.576
     Which probability lies below your z?
     The bound is one-sided.
@@ -90,19 +89,17 @@ success.holds(
     "a side of 120 px needs fewer than 22 particles",
     lambda x: np.exp(log_need(x)[0]) < 22 or f"it needs {np.exp(log_need(x)[0]):.0f}",
 )
-
-
-@success.wrong(
-    """moves x and y together, so particles lie on a line
+success.wrong(
+    """diagonal: moves x and y together, so particles lie on a line
     Plot your particles: do they fill the square?
     x and y need draws of their own.
     rng.random((2, runs, M)): two numbers per particle.""",
     when=lambda x: 0.3 < slope_of_need(x) < 0.7,
+)(
+    lambda side, M, rng, runs: (
+        np.abs(side * (rng.random((runs, M)) - 0.5)) * math.sqrt(2) < 30
+    ).any(axis=-1)
 )
-def diagonal(side, M, rng, runs):
-    return (np.abs(side * (rng.random((runs, M)) - 0.5)) * math.sqrt(2) < 30).any(axis=-1)
-
-
 success.wrong("""side-ignored: does not depend on the side of the square
     Your answer is the same for every side.
     Scale the draws by the side.

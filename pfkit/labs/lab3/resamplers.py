@@ -10,9 +10,7 @@ from pfkit.labs.statistics import rng_of
 Q4 = Question("Random numbers, and the resamplers")
 
 W = np.array([0.40, 0.25, 0.15, 0.12, 0.08])
-
 W3 = np.array([0.32, 0.32, 0.36])
-
 W8 = np.array([0.02, 0.31, 0.09, 0.14, 0.05, 0.11, 0.21, 0.07])
 
 
@@ -77,7 +75,6 @@ q4a = Numeric(
     tol=0.01,
     names=("multinomial", "stratified", "systematic", "residual"),
 )
-
 q4a.wrong("""stratified-is-systematic: takes stratified for systematic
     In stratified resampling, is the offset the same in each stratum?
     Each of the M strata draws its own point.

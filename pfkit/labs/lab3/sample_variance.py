@@ -14,19 +14,13 @@ from pfkit.labs.target import around, target_log
 P7 = Question("Sample variance")
 
 FILM = target_log("fixed", "low")
-
 HOME = FILM.start[:2]
-
 W5 = np.array([0.40, 0.25, 0.15, 0.12, 0.08])
 
 
 def _copies(f, rng, runs):
     schemes = (pf.multinomial, pf.systematic)
     return np.stack([shaped(f(s, W5, rng, runs), runs, 5) for s in schemes], axis=1)
-
-
-def _thresholds(f, rng, runs):
-    return np.stack([shaped(f(threshold, rng, runs), runs) for threshold in (1.0, 0.5)], axis=1)
 
 
 def _multinomial_variance(x):
@@ -100,7 +94,9 @@ copies.wrong("""one-call: calls the scheme once and repeats the result
     test="ratio of the variances over runs > 2",
     runs=100,
     margin="ratio 45, sd of its logarithm .2: 15 standard errors above 2",
-    measure=_thresholds,
+    measure=lambda f, rng, runs: np.stack(
+        [shaped(f(threshold, rng, runs), runs) for threshold in (1.0, 0.5)], axis=1
+    ),
 )
 def final_error(threshold, rng, runs):
     """Error in x after 50 frames that say little: 100 particles, multinomial resampling."""

@@ -17,13 +17,7 @@ def survival(w, M):
 
 
 CASES = tuple((s, w) for s in (pf.multinomial, pf.systematic) for w in (0.012, 0.005))
-
 CHANCES = tuple(survival(w, 100)[k] for k in (0, 1) for w in (0.012, 0.005))
-
-
-def _survived(f, rng, runs):
-    return np.stack([shaped(f(scheme, w, rng, runs), runs) for scheme, w in CASES], axis=1)
-
 
 q5a = Numeric(
     """Survival of w = .012 and w = .005 among M = 100: multinomial, systematic
@@ -39,7 +33,6 @@ q5a = Numeric(
         "systematic, w = .005",
     ),
 )
-
 q5a.wrong("""sign-error: has the sign of epsilon wrong, as one printed solution has: with w =
          1/M + eps the miss is 1 - 1/M - eps
     Should a heavier particle survive more often or less often?
@@ -114,7 +107,9 @@ q5b.wrong("""both-alike: uses the multinomial formula for both schemes
     runs=2000,
     pool=20_000,
     margin="4.5 standard errors, three shares: 2e-5 by the normal law",
-    measure=_survived,
+    measure=lambda f, rng, runs: np.stack(
+        [shaped(f(scheme, w, rng, runs), runs) for scheme, w in CASES], axis=1
+    ),
 )
 def survived(scheme, w, rng, runs):
     """Does particle 0, of weight w among 100, survive? The others share the rest."""
@@ -151,15 +146,13 @@ def copies(scheme, w, rng, runs):
     return np.array([np.sum(scheme(_one_heavy(w), rng) == 0) for _ in range(runs)])
 
 
-@survived.wrong(
-    """leaves the others at 1/100, so the weights do not sum to one
+survived.wrong(
+    """weights-not-normalised: leaves the others at 1/100, so the weights do not sum to one
     What do your weights sum to?
     If particle 0 has w, the others share 1 - w.
     weights = np.full(100, (1 - w) / 99); weights[0] = w.""",
     when=lambda x: x[:, 0].mean() < 0.6 and 0.1 < x[:, 3].mean() < 0.4,
-)
-def weights_not_normalised(scheme, w, rng, runs):
-    return np.array([0 in scheme(_others_kept(w), rng) for _ in range(runs)])
+)(lambda scheme, w, rng, runs: np.array([0 in scheme(_others_kept(w), rng) for _ in range(runs)]))
 
 
 def _is(pair, a, b):

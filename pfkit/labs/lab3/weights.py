@@ -30,7 +30,6 @@ p1b = Numeric(
     tol=0.002,
     names=("1 particle", "4 particles", "10 particles"),
 )
-
 p1b.wrong("""complement: is the probability that somebody is in the room
     Should an empty room become more or less likely with more particles?
     You computed the opposite event.
@@ -71,7 +70,6 @@ p2a = Numeric(
     (2.5, 1.0, 0.4),
     tol=0.005,
 )
-
 p2a.wrong("""inverse: is proposal over target: upside down
     The first place is drawn too seldom. Should its samples count for less?
     Weight times proposal must give the target back.

@@ -4,11 +4,13 @@ Q9 to Q12 change what the filter believes about noise and motion; in Q13 to Q16 
 measurements are false. The notebook is ``notebooks/labs/lab4_tuning_outliers.ipynb``.
 """
 
+import json
+from importlib.resources import files
+
 from pfkit.labs.lab import Lab
 from pfkit.labs.lab4 import detection, gates, modelled_noise, motion_models, precision, undetected
 from pfkit.labs.lab4.detection import auc
 from pfkit.labs.lab4.motion_models import model_of, start_of
-from pfkit.labs.long_runs import LONG_RUNS
 from pfkit.labs.target import AREA, anywhere, around, target_log, track
 
 LAB = Lab.of(
@@ -21,7 +23,7 @@ film, circle, half_false = modelled_noise.FILM, motion_models.CIRCLE, detection.
 
 def long_run(question: str) -> None:
     """Print what the full film says: 688 frames, 1,000 particles, median (sd) of ten seeds."""
-    table = LONG_RUNS[question]
+    table = json.loads(files(__name__).joinpath("long_runs.json").read_text("ascii"))[question]
     print(f"{table['what']}: median over ten seeds (sd)")
     for value, cells in table["rows"]:
         shown = f"{value:g}" if isinstance(value, float | int) else value

@@ -12,9 +12,7 @@ from pfkit.labs.target import AREA, around, target_log, track
 Q13 = Question("Detecting outliers")
 
 FALSE = target_log("fixed", "outliers")
-
 HOME = target_log("fixed", "low").start[:2]
-
 IS_FALSE = np.array([bool(k[0]) for k in FALSE.outlier or ()])
 
 

@@ -12,15 +12,8 @@ from pfkit.labs.target import anywhere, around, target_log, track
 Q15 = Question("What moves the detector?")
 
 FILM = target_log("fixed", "low")
-
 HOME = FILM.start[:2]
-
 BELIEVED = (1e-4, 1.0, 100.0, 1000.0, 2000.0, 1e4)
-
-
-def _rejections(f, rng, runs):
-    return np.stack([shaped(f(v, rng, runs), runs) for v in BELIEVED], axis=1)
-
 
 q15a = Prediction("""Rejected share of honest frames as the believed sensor variance grows
     a  It falls: a modest sensor forgives
@@ -42,7 +35,9 @@ q15a = Prediction("""Rejected share of honest frames as the believed sensor vari
     runs=4,
     pool=250,
     margin=".992 (sd .004), 0, 1: over 12 standard errors",
-    measure=_rejections,
+    measure=lambda f, rng, runs: np.stack(
+        [shaped(f(v, rng, runs), runs) for v in BELIEVED], axis=1
+    ),
 )
 def rejected(variance, rng, runs):
     """Share of 150 honest frames that a gate at 1e-4 rejects; known start, target stands still."""
@@ -118,7 +113,6 @@ q15c = Numeric(
     tol=5.0,
     unit="px^2",
 )
-
 q15c.wrong("""one-dimension: uses the peak of a one-dimensional Gaussian
     The measurement has two components.
     In two dimensions the peak is 1/(2 pi variance), without a root.

@@ -12,9 +12,7 @@ from pfkit.labs.target import anywhere, around, target_log, track
 Q9 = Question("Modelled sensor noise")
 
 FILM = target_log("fixed", "low")
-
 HOME = FILM.start[:2]
-
 VARIANCES = (1e-4, 1e-2, 1.0, 100.0, 1e4)
 
 
@@ -32,10 +30,6 @@ def linear_weights(variance, rng, runs, M=300, frames=200):
         state = np.take_along_axis(state, ancestors[None], axis=-1)
         errors.append(np.hypot(*(state.mean(axis=-1) - HOME[:, None])))
     return np.array(errors)
-
-
-def _sensor(f, rng, runs):
-    return np.stack([shaped(f(v, rng, runs), runs) for v in VARIANCES], axis=1)
 
 
 def _column(x):
@@ -63,7 +57,9 @@ q9a = Prediction("""True variance 1 px^2. Which believed variance gives the smal
     runs=12,
     pool=500,
     margin="1.20 px (sd .005); .454 (.015) against .7; 1.22 (.13) against .45: 5.8 sd",
-    measure=_sensor,
+    measure=lambda f, rng, runs: np.stack(
+        [shaped(f(v, rng, runs), runs) for v in VARIANCES], axis=1
+    ),
 )
 def sensor_sweep(variance, rng, runs):
     """Mean error of frames 50 to 200, one per run, if the sensor is believed to have it."""

@@ -27,7 +27,6 @@ def start_of(name, log, shape, rng):
 
 
 RATIOS = (0.0025, 0.01, 0.09, 0.25)
-
 MODELS = ("fixed", "line", "circle")
 
 

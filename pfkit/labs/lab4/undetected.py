@@ -12,12 +12,7 @@ from pfkit.labs.target import AREA, anywhere, around, target_log, track
 Q16 = Question("Outliers that nobody detects")
 
 FALSE = target_log("fixed", "outliers")
-
 HOME = FALSE.start[:2]
-
-
-def _four(f, rng, runs):
-    return shaped(f(rng, runs), 4, runs).T
 
 
 def _middle(x):
@@ -37,7 +32,7 @@ def _middle(x):
     runs=5,
     pool=250,
     margin="28.7 (sd 1.0), .66 (.02), .65 (.03), 199 (6) px: over 14 standard errors",
-    measure=_four,
+    measure=lambda f, rng, runs: shaped(f(rng, runs), 4, runs).T,
 )
 def four_filters(rng, runs):
     """Median error of 200 frames, half of them false: four filters, one number per run."""

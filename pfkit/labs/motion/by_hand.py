@@ -14,7 +14,6 @@ hand = Numeric(
     unit="m",
     names=("x", "y"),
 )
-
 hand.wrong("""drive-then-turn: drives straight on and turns at the end
     When does the robot turn: during the second, or after it?
     It turns all the time, so its track bends to the right.
@@ -41,7 +40,6 @@ drift = Numeric(
     tol=0.004,
     unit="m",
 )
-
 drift.wrong("""linear: adds the errors as if all had the same sign
     Do ten independent errors all point the same way?
     Variances add, standard deviations do not.

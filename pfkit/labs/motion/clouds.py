@@ -47,10 +47,6 @@ def _speed(f):
     return _says(_ends(f, (2.0, 0.0, 0.5), (0.04, 0, 0, 0))[0].std(), 0.2)
 
 
-def _turns(f):
-    return _says(_ends(f, (1.0, 0.8, 0.5), (0, 0, 0.04, 0.09))[2].std(), 0.1562)
-
-
 def _cross(f):
     x, y, _ = _ends(f, (0.0, 1.0, 0.5), (0, 0.04, 0, 0))
     return _says(np.sqrt(np.mean(x**2 + y**2)), 0.1 * sinc(0.25))
@@ -83,21 +79,24 @@ def sample(pose, u, alpha, rng):
 sample.holds("with all alphas 0 it is the arc", _noise_free)
 sample.holds("every particle ends somewhere else", _own)
 sample.holds("speed has the variance alpha_1 v^2, within 8 %", _speed)
-sample.holds("turn rate has alpha_3 v^2 + alpha_4 omega^2, within 8 %", _turns)
+sample.holds(
+    "turn rate has alpha_3 v^2 + alpha_4 omega^2, within 8 %",
+    lambda f: _says(_ends(f, (1.0, 0.8, 0.5), (0, 0, 0.04, 0.09))[2].std(), 0.1562),
+)
 sample.holds("turning on the spot slips by alpha_2 omega^2, within 8 %", _cross)
 sample.holds("a robot at rest gets no error", _still)
 sample.holds("an error in omega bends the track and turns the heading", _bends)
-
-
-@sample.wrong(
-    """draws one error for the whole cloud
+sample.wrong(
+    """one-error: draws one error for the whole cloud
     How many random numbers does your function draw for 50 particles?
     One robot errs once, but each particle is a different guess at that robot.
     rng.standard_normal(M) gives each particle its own.""",
     when=lambda f: not _own(f),
+)(
+    lambda pose, u, alpha, rng: _drive(
+        pose, u, np.sqrt(_variances(u, alpha)) * rng.standard_normal(2)
+    )
 )
-def _one_error(pose, u, alpha, rng):
-    return _drive(pose, u, np.sqrt(_variances(u, alpha)) * rng.standard_normal(2))
 
 
 @sample.wrong(
@@ -114,23 +113,21 @@ def _on_pose(pose, u, alpha, rng):
     return moved + sd[:, None] * rng.standard_normal(moved.shape)
 
 
-@sample.wrong(
-    """gives the same error to a robot at rest and to one at full speed
+sample.wrong(
+    """constant: gives the same error to a robot at rest and to one at full speed
     Should a parked robot drift?
     The variances multiply v^2 and omega^2.
     alpha_1 * v**2 + alpha_2 * omega**2""",
     when=lambda f: not _still(f),
-)
-def _constant(pose, u, alpha, rng):
-    return _drive(pose, u, _errors((alpha[0], alpha[2]), pose.shape[1], rng))
-
-
-@sample.wrong(
-    """takes the variance for a standard deviation
+)(lambda pose, u, alpha, rng: _drive(pose, u, _errors((alpha[0], alpha[2]), pose.shape[1], rng)))
+sample.wrong(
+    """no-root: takes the variance for a standard deviation
     What does a standard normal draw have to be multiplied by?
     By the standard deviation, the root of the variance.
     np.sqrt(alpha_1 * v**2 + alpha_2 * omega**2)""",
     when=lambda f: _own(f) and _still(f) and _bends(f) and _speed(f) is not True,
+)(
+    lambda pose, u, alpha, rng: _drive(
+        pose, u, _errors(_variances(u, alpha) ** 2, pose.shape[1], rng)
+    )
 )
-def _no_root(pose, u, alpha, rng):
-    return _drive(pose, u, _errors(_variances(u, alpha) ** 2, pose.shape[1], rng))

@@ -9,7 +9,6 @@ from pfkit.labs.motion.predictions import rigid, split
 BREAK = Question("Experiments")
 
 ALPHA = (0.02, 0.002, 0.05, 0.05, 0.005, 0.005)
-
 U = (1.0, 0.3, 0.5)
 
 

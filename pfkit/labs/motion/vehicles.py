@@ -13,7 +13,6 @@ wheels = Numeric(
     tol=0.005,
     names=("speed in m/s", "turn rate in rad/s", "radius in m"),
 )
-
 wheels.wrong("""sum: adds the wheels instead of averaging them
     If both rims ran at 1 m/s, how fast would the robot be?
     The middle of the axle moves at the mean of the two rims.
@@ -36,7 +35,6 @@ odometry = Numeric(
     tol=0.1,
     names=("rot1 in degrees", "trans in m", "rot2 in degrees"),
 )
-
 odometry.wrong("""no-wrap: turns nearly all the way round at the end
     Is there a shorter turn to the same heading?
     A turn of -285 degrees ends where one of 75 does, but nobody drives it.

@@ -15,7 +15,6 @@ hand = Numeric(
     75.0,
     tol=0.5,
 )
-
 hand.wrong("""no-heading: is the direction on the map, not seen from the robot's nose
     The same landmark looks different when the robot turns.
     A bearing is measured from the nose: subtract the heading.
@@ -54,7 +53,6 @@ weight = Numeric(
     _first(_P.prod(axis=0)),
     tol=0.004,
 )
-
 weight.wrong("""averages: averages the three likelihoods
     B was three deviations off in bearing. Should one good range excuse that?
     Independent measurements multiply.

@@ -25,7 +25,6 @@ sd = Numeric(
     float(np.exp(4)),
     tol=0.5,
 )
-
 sd.wrong("""no-half: leaves out the one half in the exponent
     Look at the exponent of the Gaussian.
     It is e^2 over twice the variance.

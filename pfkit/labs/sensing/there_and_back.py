@@ -119,10 +119,6 @@ def _returns(poses):
     return holds
 
 
-def _straight(f):
-    return np.allclose(f(np.array([2.0, 1.0, 0.0]), 3.0, 0.0), (5.0, 1.0))
-
-
 @code(
     """Where a measurement puts its landmark
     In which direction of the map does the beam fly?
@@ -135,7 +131,10 @@ def place(pose, r, phi):
     return x + r * np.cos(theta + phi), y + r * np.sin(theta + phi)
 
 
-place.holds("3 m straight ahead of (2, 1), heading 0, is (5, 1)", _straight)
+place.holds(
+    "3 m straight ahead of (2, 1), heading 0, is (5, 1)",
+    lambda f: np.allclose(f(np.array([2.0, 1.0, 0.0]), 3.0, 0.0), (5.0, 1.0)),
+)
 place.holds(
     "the round trip comes home for heading 0",
     _returns(poses_at_random(6) * np.array([[1], [1], [0]])),
@@ -151,19 +150,15 @@ place.wrong("""minus-heading: subtracts the heading
     You subtracted it to get the bearing. How do you go back?
     Undo a subtraction by an addition.
     theta + phi""")(lambda pose, r, phi: place(np.array((*pose[:2], -pose[2])), r, phi))
-
-
-@place.wrong("""starts at the origin instead of the robot
+place.wrong("""from-origin: starts at the origin instead of the robot
     Where does the beam start?
     r and phi give a vector; add it to a place.
-    x + ..., y + ...""")
-def from_origin(pose, r, phi):
-    return place(pose * np.array([0, 0, 1]).reshape(3, *[1] * np.ndim(r)), r, phi)
-
-
-@place.wrong("""swaps sine and cosine
+    x + ..., y + ...""")(
+    lambda pose, r, phi: place(pose * np.array([0, 0, 1]).reshape(3, *[1] * np.ndim(r)), r, phi)
+)
+place.wrong("""swapped: swaps sine and cosine
     What is straight ahead of a robot that looks along x?
     cos goes with x.
-    x + r * cos(...), y + r * sin(...)""")
-def swapped(pose, r, phi):
-    return (pose[0] + r * np.sin(pose[2] + phi), pose[1] + r * np.cos(pose[2] + phi))
+    x + r * cos(...), y + r * sin(...)""")(
+    lambda pose, r, phi: (pose[0] + r * np.sin(pose[2] + phi), pose[1] + r * np.cos(pose[2] + phi))
+)
