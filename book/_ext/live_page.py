@@ -53,6 +53,7 @@ from pfkit.explore.record import record, to_script
 from pfkit.explore.still import to_svg
 from pfkit.labs.guard import PAGE_LIMIT
 from pfkit.labs.items import Choice, Prediction
+from pfkit.labs.progress import FORMER_NAMES
 
 logger = logging.getLogger(__name__)
 ROOT = Path(__file__).resolve().parent.parent.parent
@@ -189,7 +190,8 @@ def read_lab(cells: list[dict[str, Any]]) -> dict[str, Any] | None:
         ):
             entry.update(kind="check", item=cell["metadata"].get("check", open_item))
         out.append(entry)
-    return {"lab": module, "alias": alias, "cells": out}
+    former = FORMER_NAMES.get(module)
+    return {"lab": module, "former": former, "alias": alias, "cells": out}
 
 
 def find_lab_cells(app: Sphinx, doctree: nodes.document) -> None:

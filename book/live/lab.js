@@ -33,7 +33,7 @@
       if (text.length > BIGGEST) throw new Error(`it is larger than ${BIGGEST / 1e6} megabytes`);
       data = JSON.parse(text);
       if (!data || typeof data !== "object" || data.schema !== 1) throw new Error("its schema is not 1");
-      if (data.lab !== lab.lab) throw new Error("it belongs to another lab");
+      if (![lab.lab, lab.former].includes(data.lab)) throw new Error("it belongs to another lab");
       if (!data.answers || typeof data.answers !== "object") throw new Error("it holds no answers");
     } catch (error) {
       return `Nothing was imported: ${String(error.message).slice(0, 120)}.`;
@@ -448,6 +448,7 @@
     lab = JSON.parse(data.textContent);
     limit = { seconds: lab.seconds, pause: 300 }; // of a cell; ms without a key, to keep an answer
     store = new PF.Store(lab.lab);
+    if (lab.former) store.bring(lab.former);
     python = new PF.Python("cells");
     await PF.loadScript("editor.js");
     const at = (cell) => document.querySelector(`.pf-cell-${cell.index}`);

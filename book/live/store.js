@@ -11,6 +11,19 @@
       this.place = `where-am-i/1/${lab}/`;
     }
 
+    /* Take over what was kept when the lab had another name, unless it was kept again since. */
+    bring(former) {
+      const then = new PF.Store(former).place;
+      try {
+        for (const key of Object.keys(localStorage).filter((k) => k.startsWith(then))) {
+          const place = this.place + key.slice(then.length);
+          if (localStorage.getItem(place) === null) {
+            localStorage.setItem(place, localStorage.getItem(key));
+          }
+        }
+      } catch { /* refused or full: nothing can be taken over, and nothing is lost */ }
+    }
+
     /* False if the browser refuses, or is full. */
     write(name, value) {
       try {

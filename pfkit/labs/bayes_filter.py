@@ -103,7 +103,7 @@ def _untouched(f):
     bel, like = _belief(9)
     kept = bel.copy(), like.copy()
     f(bel, like)
-    return bool(np.array_equal(kept[0], bel) and np.array_equal(kept[1], like))
+    return np.array_equal(kept[0], bel) and np.array_equal(kept[1], like)
 
 
 @code(
@@ -128,7 +128,7 @@ correct.wrong("""in-place: changes the array it was given
     bel *= likelihood writes into the argument.
     Make a new array: joint = bel * likelihood""")(
     lambda bel, like: (np.divide(np.multiply(bel, like, out=bel), bel.sum(), out=bel), 1.0),
-    when=lambda f: bool(not _untouched(f)),
+    when=lambda f: not _untouched(f),
 )
 correct.wrong("""likelihood-only: normalises the likelihood and forgets the belief
     What did the robot know before the look?
@@ -153,7 +153,7 @@ MOVES = {0: 0.1, 1: 0.7, 2: 0.2}
 def _sum_rule(f):
     bel = _belief(3)[0]
     found = np.asarray(f(bel, MOVES))
-    return bool(np.allclose(found, predict_line(bel, MOVES)))
+    return np.allclose(found, predict_line(bel, MOVES))
 
 
 @code(
@@ -169,15 +169,15 @@ def predict_line(bel, moves):
 
 predict_line.holds(
     "a sure move of one cell moves the belief one cell on",
-    lambda f: bool(np.allclose(f(np.eye(5)[1], {1: 1.0}), np.eye(5)[2])),
+    lambda f: np.allclose(f(np.eye(5)[1], {1: 1.0}), np.eye(5)[2]),
 )
 predict_line.holds(
     "the last cell's neighbour is the first",
-    lambda f: bool(np.allclose(f(np.eye(5)[4], {1: 1.0}), np.eye(5)[0])),
+    lambda f: np.allclose(f(np.eye(5)[4], {1: 1.0}), np.eye(5)[0]),
 )
 predict_line.holds("every cell is the sum over where the robot may have come from", _sum_rule)
 predict_line.holds(
-    "the belief still sums to one", lambda f: bool(np.isclose(np.sum(f(_belief(4)[0], MOVES)), 1))
+    "the belief still sums to one", lambda f: np.isclose(np.sum(f(_belief(4)[0], MOVES)), 1)
 )
 predict_line.wrong("""backwards: moves the belief the wrong way
     Put all belief into cell 1 and move by one. Where is it?
@@ -226,19 +226,19 @@ def twice_x(rng, looks=2):
     return bel.max(axis=1).mean() - np.mean(bel.argmax(axis=1) == x)
 
 
-twice_x.holds("mean overconfidence between 0.05 and 0.3", lambda x: bool(0.05 < x.mean() < 0.3))
-twice_x.holds("every value lies between -1 and 1", lambda x: bool((np.abs(x) <= 1).all()))
+twice_x.holds("mean overconfidence between 0.05 and 0.3", lambda x: 0.05 < x.mean() < 0.3)
+twice_x.holds("every value lies between -1 and 1", lambda x: (np.abs(x) <= 1).all())
 twice_x.wrong("""once: counts each look once: such robots are honest
     Is the likelihood squared?
     Raise it to the power 2.
     drive(rng, B=200, T=25, looks=2)""")(
-    lambda rng: twice_x(rng, 1), when=lambda x: bool(abs(x.mean()) < 0.04)
+    lambda rng: twice_x(rng, 1), when=lambda x: abs(x.mean()) < 0.04
 )
 twice_x.wrong("""sign: subtracts the claim from the share that is right
     What sign has too much confidence?
     Claim minus share right.
     return claim.mean() - right.mean()""")(
-    lambda rng: -twice_x(rng), when=lambda x: bool(x.mean() < -0.05)
+    lambda rng: -twice_x(rng), when=lambda x: x.mean() < -0.05
 )
 
 
@@ -264,24 +264,24 @@ def zero_x(rng, assumed=1e-12):
     return float(_ruled_out(rng, assumed).any())
 
 
-zero_x.holds("only zeros and ones", lambda x: bool(np.isin(x, (0, 1)).all()))
-zero_x.holds("share between 0.56 and 0.92", lambda x: bool(0.56 < x.mean() < 0.92))
+zero_x.holds("only zeros and ones", lambda x: np.isin(x, (0, 1)).all())
+zero_x.holds("share between 0.56 and 0.92", lambda x: 0.56 < x.mean() < 0.92)
 zero_x.wrong("""honest: lets the filter assume the true false-alarm rate, so no robot is lost
     What does the filter assume about walls?
     The filter's false-alarm rate is 1e-12, the real one 0.05.
-    assumed=(0.8, 1e-12)""")(lambda rng: zero_x(rng, 0.05), when=lambda x: bool((x == 0).all()))
+    assumed=(0.8, 1e-12)""")(lambda rng: zero_x(rng, 0.05), when=lambda x: (x == 0).all())
 zero_x.wrong("""last-look: looks only at the last of the 40 steps
     The question is whether it ever happened.
     Look at the true cell after every step, not only the last.
     after[np.arange(40), 0, cells[:, 0]].min()""")(
     lambda rng: float(_ruled_out(rng)[-1]),
-    when=lambda x: bool(np.isin(x, (0, 1)).all() and 0 < x.mean() < 0.5),
+    when=lambda x: np.isin(x, (0, 1)).all() and 0 < x.mean() < 0.5,
 )
 zero_x.wrong("""share: returns a share of time, not whether it ever happened
     One robot, one answer: yes or no.
     Return 1 or 0.
     float((belief_in_true_cell < 1e-6).any())""")(
-    lambda rng: _ruled_out(rng).mean(), when=lambda x: bool(not np.isin(x, (0, 1)).all())
+    lambda rng: _ruled_out(rng).mean(), when=lambda x: not np.isin(x, (0, 1)).all()
 )
 
 why = Text(

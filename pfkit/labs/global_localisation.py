@@ -154,7 +154,7 @@ def _different(f):
 
 def _wrapped(f):
     theta = np.asarray(f(POSE, 4, CENTRE), dtype=float)[2]
-    return bool((np.abs(theta) <= np.pi + 1e-9).all())
+    return (np.abs(theta) <= np.pi + 1e-9).all()
 
 
 @code(
@@ -336,31 +336,28 @@ def alive_x(M, rng, floor=0.01, named=False):
 
 
 alive_x.holds(
-    "whole numbers from 0 to 4",
-    lambda x: bool((x >= 0).all() and (x <= 4).all() and (x % 1 == 0).all()),
+    "whole numbers from 0 to 4", lambda x: (x >= 0).all() and (x <= 4).all() and (x % 1 == 0).all()
 )
 alive_x.holds(
     "10,000 particles found at least one hypothesis more, on average",
-    lambda x: bool(np.mean(x[:, 1] - x[:, 0]) >= 1),
+    lambda x: np.mean(x[:, 1] - x[:, 0]) >= 1,
 )
-alive_x.holds("1,000 particles found less than 2.4", lambda x: bool(x[:, 0].mean() < 2.4))
+alive_x.holds("1,000 particles found less than 2.4", lambda x: x[:, 0].mean() < 2.4)
 alive_x.wrong("""named: lets the landmarks have names, so that there is one hypothesis only
     Does your sensor know which landmark is which?
     Wrap the sensor in pf.MaximumLikelihood.
     sensor = pf.MaximumLikelihood(pf.RangeBearing(world, 0.3, 0.1))""")(
-    lambda M, rng: alive_x(M, rng, named=True),
-    when=lambda x: bool((x <= 1).all() and (x % 1 == 0).all()),
+    lambda M, rng: alive_x(M, rng, named=True), when=lambda x: (x <= 1).all() and (x % 1 == 0).all()
 )
 alive_x.wrong("""no-look: counts before the look: four in every run
     Where does the prior put its particles?
     Weigh the set with one measurement first.
-    bel, _ = pf.update(bel, z, sensor)""")(lambda M, rng: 4, when=lambda x: bool((x == 4).all()))
+    bel, _ = pf.update(bel, z, sensor)""")(lambda M, rng: 4, when=lambda x: (x == 4).all())
 alive_x.wrong("""mass: returns a mass, not a count
     How many hypotheses can be alive?
     Compare each mass with 0.01 and count.
     np.sum(masses > 0.01)""")(
-    lambda M, rng: alive_x(M, rng, 0.01) / 4,
-    when=lambda x: bool(x.max() <= 1 and (x % 1 != 0).any()),
+    lambda M, rng: alive_x(M, rng, 0.01) / 4, when=lambda x: x.max() <= 1 and (x % 1 != 0).any()
 )
 
 
@@ -394,21 +391,19 @@ def luck_x(rng, runs, M=300, world=None, named=False, start=None):
     return pf.hypothesis_mass(bel, poses, 3.0).argmax(axis=0)
 
 
-luck_x.holds(
-    "one whole number from 0 to 3 for each run", lambda x: bool(np.isin(x, range(4)).all())
-)
+luck_x.holds("one whole number from 0 to 3 for each run", lambda x: np.isin(x, range(4)).all())
 luck_x.holds("each copy is the heaviest in a quarter of the runs", _even)
 luck_x.wrong("""yes-no: returns yes or no instead of the number of the copy
     Which values occur in your result?
     Return 0, 1, 2 or 3: the place of the heaviest copy.
     masses.argmax(axis=0)""")(
-    lambda rng, runs: luck_x(rng, runs) == 0, when=lambda x: bool(set(np.unique(x)) == {0.0, 1.0})
+    lambda rng, runs: luck_x(rng, runs) == 0, when=lambda x: set(np.unique(x)) == {0.0, 1.0}
 )
 luck_x.wrong("""told: is always right: somebody told the filter where it is
     What does your filter know that the measurements do not say?
     Look for names of landmarks, a known start, or a prior that leaves copies out.
     Use pf.MaximumLikelihood and pf.uniform_prior over pf.worlds.square().""")(
-    lambda rng, runs: luck_x(rng, runs, named=True), when=lambda x: bool(np.mean(x == 0) > 0.6)
+    lambda rng, runs: luck_x(rng, runs, named=True), when=lambda x: np.mean(x == 0) > 0.6
 )
 luck_x.wrong("""wrong-corner: always ends at one and the same wrong copy
     Which copy did you start from?

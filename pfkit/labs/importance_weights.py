@@ -113,10 +113,8 @@ def from_variance(s2, M):
 
 
 from_variance.holds("equals 1 / sum of squares for random sets", _matches_sets)
-from_variance.holds("equal weights are worth M", lambda f: bool(np.isclose(f(0.0, 50), 50)))
-from_variance.holds(
-    "one weight of 1 is worth 1 particle", lambda f: bool(np.isclose(f(1 / 50, 50), 1))
-)
+from_variance.holds("equal weights are worth M", lambda f: np.isclose(f(0.0, 50), 50))
+from_variance.holds("one weight of 1 is worth 1 particle", lambda f: np.isclose(f(1 / 50, 50), 1))
 from_variance.wrong("""m-squared: takes the variance as if it had M in its denominator
     Which denominator does the report's variance have?
     With M - 1 in the variance, M^2 becomes M (M - 1).
@@ -145,12 +143,12 @@ def _right(f):
 
 def _constant_cancels(f):
     x, log_p, log_q = _draws(7)
-    return bool(np.isclose(f(x, log_p + 3.0, log_q), f(x, log_p, log_q)))
+    return np.isclose(f(x, log_p + 3.0, log_q), f(x, log_p, log_q))
 
 
 def _tiny(f):
     x, log_p, log_q = _draws(8)
-    return bool(np.isclose(f(x, log_p - 5000.0, log_q), estimate(x, log_p, log_q)))
+    return np.isclose(f(x, log_p - 5000.0, log_q), estimate(x, log_p, log_q))
 
 
 def _mean_of_ratio(f, log_p, log_q):
@@ -218,20 +216,20 @@ def narrow_x(rng, s=0.4, M=1000):
     return np.mean(np.exp(pf.log_gaussian(x, 1.0) - pf.log_gaussian(x, s)))
 
 
-narrow_x.holds("at least 60 of 100 runs lie below 1", lambda x: bool(np.sum(x < 1) >= 0.6 * x.size))
-narrow_x.holds("the median lies between 0.7 and 0.95", lambda x: bool(0.7 < np.median(x) < 0.95))
-narrow_x.holds("the runs differ", lambda x: bool(x.std() > 1e-6))
+narrow_x.holds("at least 60 of 100 runs lie below 1", lambda x: np.sum(x < 1) >= 0.6 * x.size)
+narrow_x.holds("the median lies between 0.7 and 0.95", lambda x: 0.7 < np.median(x) < 0.95)
+narrow_x.holds("the runs differ", lambda x: x.std() > 1e-6)
 narrow_x.wrong("""wide: draws from a proposal that is not narrow: its runs lie on both sides of
          1
     Which standard deviation do your draws have?
     Multiply standard normal draws by 0.4.
     x = 0.4 * rng.standard_normal(1000)""")(
-    lambda rng: narrow_x(rng, 2.0), when=lambda x: bool(0.96 < np.median(x) < 1.1)
+    lambda rng: narrow_x(rng, 2.0), when=lambda x: 0.96 < np.median(x) < 1.1
 )
 narrow_x.wrong("""normalised: averages normalised weights, which is 1 / M whatever happens
     What is the mean of weights that sum to one?
     Use the unnormalised weights p / q.
-    Do not divide by the sum.""")(lambda rng: 1e-3, when=lambda x: bool(np.allclose(x, 1e-3)))
+    Do not divide by the sum.""")(lambda rng: 1e-3, when=lambda x: np.allclose(x, 1e-3))
 
 
 @experiment(
@@ -252,18 +250,18 @@ def dim_x(rng, D=3, M=20_000):
     return pf.ess(pf.normalise(pf.log_gaussian(x, 0.3).sum(axis=0))[0]) / M
 
 
-dim_x.holds("mean share between 0.0009 and 0.0016", lambda x: bool(0.0009 < x.mean() < 0.0016))
-dim_x.holds("every share is between 0 and 1", lambda x: bool((x > 0).all() and (x < 1).all()))
+dim_x.holds("mean share between 0.0009 and 0.0016", lambda x: 0.0009 < x.mean() < 0.0016)
+dim_x.holds("every share is between 0 and 1", lambda x: (x > 0).all() and (x < 1).all())
 dim_x.wrong("""one-dimension: measures one direction only
     How many components has the state?
     All three directions are measured.
     Add the log-likelihoods of the three directions.""")(
-    lambda rng: dim_x(rng, 1), when=lambda x: bool(abs(x.mean() - 0.106) < 0.02)
+    lambda rng: dim_x(rng, 1), when=lambda x: abs(x.mean() - 0.106) < 0.02
 )
 dim_x.wrong("""not-a-share: returns a number of particles, not a share
     Divide by what?
     A share is at most 1.
-    Divide by M.""")(lambda rng: dim_x(rng) * 20_000, when=lambda x: bool((x > 1).all()))
+    Divide by M.""")(lambda rng: dim_x(rng) * 20_000, when=lambda x: (x > 1).all())
 
 why = Text(
     """Why is a narrow proposal dangerous?

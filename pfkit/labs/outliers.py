@@ -38,8 +38,7 @@ byhand.wrong("""no-share: adds the floor without the factor 1 - epsilon on the h
     A report is honest with which probability?
     The honest part counts .9.
     .9 * .2420 + .005.""")(
-    (0.8051, 0.7587),
-    when=lambda x: bool(abs(x[0] - 0.8051) < 0.003 and abs(x[1] - 0.7587) < 0.0015),
+    (0.8051, 0.7587), when=lambda x: abs(x[0] - 0.8051) < 0.003 and abs(x[1] - 0.7587) < 0.0015
 )
 
 peak = Numeric(
@@ -77,7 +76,7 @@ LOG_P = np.array([-1.0, -3.0, -8.0, -2.5])
 
 def _mixes(f):
     want = np.log(0.7 * np.exp(LOG_P) + 0.3 / 50)
-    return bool(np.allclose(f(LOG_P.copy(), 0.3, 50.0), want))
+    return np.allclose(f(LOG_P.copy(), 0.3, 50.0), want)
 
 
 @code(
@@ -94,11 +93,11 @@ def mixture(log_p, epsilon, A):
 mixture.holds("(1 - epsilon) p + epsilon / A, as a logarithm", _mixes)
 mixture.holds(
     "hopeless particles get the floor, not zero",
-    lambda f: bool(np.allclose(f(np.full(3, -1e4), 0.2, 100.0), np.log(0.2 / 100))),
+    lambda f: np.allclose(f(np.full(3, -1e4), 0.2, 100.0), np.log(0.2 / 100)),
 )
 mixture.holds(
     "a density of exp(-10000) gives no nan",
-    lambda f: bool(np.isfinite(f(np.full(2, -1e4), 0.5, 1.0)).all()),
+    lambda f: np.isfinite(f(np.full(2, -1e4), 0.5, 1.0)).all(),
 )
 mixture.wrong("""floor-only: adds the floor but leaves the honest part whole
     How often is a report honest?
@@ -141,20 +140,18 @@ def responsibility(log_w, log_p, epsilon, A):
 responsibility.holds(
     "Bayes' rule on the label, with weights",
     (
-        lambda f: bool(
-            np.isclose(
-                f(LOG_W, LOG_P, 0.3, 50.0), responsibility(LOG_W, LOG_P, 0.3, 50.0), atol=1e-9
-            )
+        lambda f: np.isclose(
+            f(LOG_W, LOG_P, 0.3, 50.0), responsibility(LOG_W, LOG_P, 0.3, 50.0), atol=1e-9
         )
     ),
 )
 responsibility.holds(
     "a hopeless report is false for certain",
-    lambda f: bool(np.isclose(f(LOG_W, np.full(4, -800.0), 0.3, 50.0), 1)),
+    lambda f: np.isclose(f(LOG_W, np.full(4, -800.0), 0.3, 50.0), 1),
 )
 responsibility.holds(
     "where the cloud does no better than chance, epsilon stays what it was",
-    lambda f: bool(np.isclose(f(LOG_W, np.full(4, np.log(1 / 50)), 0.3, 50.0), 0.3)),
+    lambda f: np.isclose(f(LOG_W, np.full(4, np.log(1 / 50)), 0.3, 50.0), 0.3),
 )
 responsibility.wrong("""honest: is the probability of being honest
     Which label is asked for?
@@ -199,19 +196,19 @@ def lock_x(rng, gate=1e-4, known=False):
     return target.track(FALSE_HALF, bel, MOTION, pf.Position(5.0), rng, gate=gate).rejected.mean()
 
 
-lock_x.holds("a share between 0 and 1", lambda x: bool(((x >= 0) & (x <= 1)).all()))
-lock_x.holds("at least 0.95 in every run", lambda x: bool((x >= 0.95).all()))
+lock_x.holds("a share between 0 and 1", lambda x: ((x >= 0) & (x <= 1)).all())
+lock_x.holds("at least 0.95 in every run", lambda x: (x >= 0.95).all())
 lock_x.wrong("""known-start: starts near the ball: then only the outliers are rejected
     Where do your particles start?
     Use target.anywhere, not target.around.
     target.anywhere(1000, rng, D=3)""")(
-    lambda rng: lock_x(rng, known=True), when=lambda x: bool(0.25 < x.mean() < 0.8)
+    lambda rng: lock_x(rng, known=True), when=lambda x: 0.25 < x.mean() < 0.8
 )
 lock_x.wrong("""no-gate: leaves the gate open
     Is anything rejected?
     Pass gate=1e-4.
     target.track(..., gate=1e-4)""")(
-    lambda rng: lock_x(rng, gate=0.0), when=lambda x: bool((x == 0).all())
+    lambda rng: lock_x(rng, gate=0.0), when=lambda x: (x == 0).all()
 )
 
 
@@ -237,22 +234,22 @@ def ushape_x(rng, gate=1e-4, scale=np.sqrt):
     return found
 
 
-ushape_x.holds("three shares", lambda x: bool(x.ndim == 2 and x.shape[1] == 3))
-ushape_x.holds("at least 0.7 rejected at 1e-4", lambda x: bool((x[:, 0] >= 0.7).all()))
-ushape_x.holds("at most 0.05 rejected at 1000", lambda x: bool((x[:, 1] <= 0.05).all()))
-ushape_x.holds("at least 0.99 rejected at 5000", lambda x: bool((x[:, 2] >= 0.99).all()))
+ushape_x.holds("three shares", lambda x: x.ndim == 2 and x.shape[1] == 3)
+ushape_x.holds("at least 0.7 rejected at 1e-4", lambda x: (x[:, 0] >= 0.7).all())
+ushape_x.holds("at most 0.05 rejected at 1000", lambda x: (x[:, 1] <= 0.05).all())
+ushape_x.holds("at least 0.99 rejected at 5000", lambda x: (x[:, 2] >= 0.99).all())
 ushape_x.wrong("""variance-as-sd: hands the variance to pf.Position, which wants a standard
          deviation
     What does pf.Position take?
     sigma, in pixels, is the root of the variance.
     pf.Position(np.sqrt(variance))""")(
-    lambda rng: ushape_x(rng, scale=lambda v: v), when=lambda x: bool((x[:, 1] > 0.9).all())
+    lambda rng: ushape_x(rng, scale=lambda v: v), when=lambda x: (x[:, 1] > 0.9).all()
 )
 ushape_x.wrong("""no-gate: leaves the gate open
     Is anything rejected?
     Pass gate=1e-4.
     target.track(..., gate=1e-4)""")(
-    lambda rng: ushape_x(rng, gate=0.0), when=lambda x: bool((x == 0).all())
+    lambda rng: ushape_x(rng, gate=0.0), when=lambda x: (x == 0).all()
 )
 
 why = Text(

@@ -32,9 +32,8 @@ def _matches(part):
 def _survives(f):
     log_w, ll = _case(1)
     found, log_sum = f(log_w, ll - 1e5)
-    return bool(
-        np.allclose(found, _direct(log_w, ll)[0])
-        and np.isclose(log_sum, _direct(log_w, ll)[1] - 1e5)
+    return np.allclose(found, _direct(log_w, ll)[0]) and np.isclose(
+        log_sum, _direct(log_w, ll)[1] - 1e5
     )
 
 
@@ -76,7 +75,7 @@ def _equal_weights(f):
 
 def _comb(f):
     copies = _copies(f)
-    return bool((np.abs(copies - 5 * W) < 1).all())
+    return (np.abs(copies - 5 * W) < 1).all()
 
 
 def _no_overrun(f):
@@ -90,7 +89,7 @@ def _no_overrun(f):
 def _unbiased(f):
     copies = _copies(f, 200)
     error = copies.std(axis=0, ddof=1) / np.sqrt(200)
-    return bool((np.abs(copies.mean(axis=0) - 5 * W) < 5 * error + 0.02).all())
+    return (np.abs(copies.mean(axis=0) - 5 * W) < 5 * error + 0.02).all()
 
 
 no_copy = Prediction("""How many of 1,000 particles still matter, never resampled, after fifty
@@ -213,7 +212,7 @@ update.wrong("""underflow: goes through ordinary weights, which underflow
     What is exp(-1000) in a computer?
     Take the exponential only after you have subtracted the largest.
     np.exp(total - total.max()) is between 0 and 1, with at least one 1.""")(
-    _direct, when=lambda f: bool(_matches(0)(f) and not _survives(f))
+    _direct, when=lambda f: _matches(0)(f) and not _survives(f)
 )
 
 
@@ -318,9 +317,9 @@ def no_copy_x(rng, threshold=0.0, M=1000):
     return pf.run(log, bel, motion, sensor, rng, threshold=threshold).ess[-1]
 
 
-no_copy_x.holds("an effective sample size: at least 1", lambda x: bool((x >= 1 - 1e-9).all()))
-no_copy_x.holds("median of the runs at most 5", lambda x: bool(np.median(x) <= 5))
-no_copy_x.holds("no run above 60", lambda x: bool(x.max() <= 60))
+no_copy_x.holds("an effective sample size: at least 1", lambda x: (x >= 1 - 1e-9).all())
+no_copy_x.holds("median of the runs at most 5", lambda x: np.median(x) <= 5)
+no_copy_x.holds("no run above 60", lambda x: x.max() <= 60)
 no_copy_x.wrong("""resamples: still resamples: far too many particles matter
     What does threshold=0 do, and what is the default?
     The default resamples below M / 2.
@@ -331,7 +330,7 @@ no_copy_x.wrong("""share: returns a share, not a number of particles
     Can less than one particle matter?
     Do not divide by M.
     history.ess already counts particles.""")(
-    lambda rng: no_copy_x(rng) / 1000, when=lambda x: bool((x < 1).all())
+    lambda rng: no_copy_x(rng) / 1000, when=lambda x: (x < 1).all()
 )
 
 
@@ -358,20 +357,20 @@ def frozen_x(rng, jitter=0.0):
     return np.unique(bel.state[0]).size
 
 
-frozen_x.holds("a whole number, at least 1", lambda x: bool((x >= 1).all() and (x % 1 == 0).all()))
-frozen_x.holds("median of the runs at most 2", lambda x: bool(np.median(x) <= 2))
-frozen_x.holds("no run above 5", lambda x: bool(x.max() <= 5))
+frozen_x.holds("a whole number, at least 1", lambda x: (x >= 1).all() and (x % 1 == 0).all())
+frozen_x.holds("median of the runs at most 2", lambda x: np.median(x) <= 2)
+frozen_x.holds("no run above 5", lambda x: x.max() <= 5)
 frozen_x.wrong("""ess: returns the effective sample size, which is blind here
     Is 100 the number of different particles?
     After resampling all weights are equal, so the ESS is M.
     Count different positions instead.""")(
-    lambda rng: 100.0, when=lambda x: bool((np.abs(x - 100) < 1e-6).all())
+    lambda rng: 100.0, when=lambda x: (np.abs(x - 100) < 1e-6).all()
 )
 frozen_x.wrong("""jitter: still moves the particles with noise, so they stay different
     Which line makes copies different again?
     A robot that stands still has no motion noise in this experiment.
     Leave out predict altogether.""")(
-    lambda rng: frozen_x(rng, jitter=0.2), when=lambda x: bool(np.median(x) > 5 and x.std() > 0)
+    lambda rng: frozen_x(rng, jitter=0.2), when=lambda x: np.median(x) > 5 and x.std() > 0
 )
 
 blind = Text(

@@ -226,14 +226,14 @@ biased_x.wrong("""knows-biases: still knows the biases, so nothing goes wrong
     What does your sensor believe about the mean error of a range?
     Leave the bias out of pf.Range.
     pf.Range(log.world, sigma_r=3.0, nu=4).""")(
-    lambda rng: (0.9, 1.3), when=lambda x: bool(np.median(x[:, 0]) <= 1.5)
+    lambda rng: (0.9, 1.3), when=lambda x: np.median(x[:, 0]) <= 1.5
 )
 biased_x.wrong("""no-deviation: returns a spread that is no standard deviation in metres
     How large is a cloud of a mower on a lawn?
     Take the mean of history.position_sd.
     Return (error, spread), in this order, in metres.""")(
     lambda rng: (4.0, 12.0),
-    when=lambda x: bool(np.median(x[:, 0]) > 1.5 and not 0.2 < np.median(x[:, 1]) < 2.0),
+    when=lambda x: np.median(x[:, 0]) > 1.5 and not 0.2 < np.median(x[:, 1]) < 2.0,
 )
 
 LOST_AND_FOUND = Question("Lost and found", id="4")
@@ -290,7 +290,7 @@ lost_x.wrong("""plain: weighs plainly, and loses the robot most of the time
     How many of the first particles survive the first measurement?
     Let the measurement in by stages.
     bel, stages = pf.tempered_update(bel, z, sensor, rng).""")(
-    lambda rng: lost_x(rng, staged=False), when=lambda x: bool(np.sum(x < 0.5) < 9)
+    lambda rng: lost_x(rng, staged=False), when=lambda x: np.sum(x < 0.5) < 9
 )
 
 JUDGING = Question("Judging", id="5")

@@ -92,13 +92,13 @@ def _draws(f, w=FIVE, runs=300):
 
 def _indices(f):
     found = np.asarray(f(FIVE.copy(), np.random.default_rng(0)))
-    return bool(found.shape == (5,) and found.dtype.kind in "iu" and found.max() < 5)
+    return found.shape == (5,) and found.dtype.kind in "iu" and found.max() < 5
 
 
 def _unbiased(f):
     N = _draws(f)
     error = N.std(axis=0, ddof=1) / np.sqrt(len(N))
-    return bool((np.abs(N.mean(axis=0) - 5 * FIVE) <= 5 * error + 1e-9).all())
+    return (np.abs(N.mean(axis=0) - 5 * FIVE) <= 5 * error + 1e-9).all()
 
 
 def _floor_ceil(f):
@@ -110,12 +110,12 @@ def _floor_ceil(f):
 
 def _zeros(f):
     w = np.array([0.0, 0.5, 0.0, 0.5, 0.0])
-    return bool((_draws(f, w, 100)[:, [0, 2, 4]] == 0).all())
+    return (_draws(f, w, 100)[:, [0, 2, 4]] == 0).all()
 
 
 def _rough(f):
     w = np.full(100, 0.9997 / 100)  # sums to one to three digits only
-    return bool(_draws(f, w, 200).max() <= 2)
+    return _draws(f, w, 200).max() <= 2
 
 
 def _teeth(w, rng, spacing=None):
@@ -194,11 +194,11 @@ def leftover(w):
     return rest / rest.sum()
 
 
-leftover.holds("none is negative", lambda f: bool((np.asarray(f(FIVE.copy())) >= 0).all()))
-leftover.holds("they sum to one", lambda f: bool(np.isclose(np.sum(f(FIVE.copy())), 1)))
+leftover.holds("none is negative", lambda f: (np.asarray(f(FIVE.copy())) >= 0).all())
+leftover.holds("they sum to one", lambda f: np.isclose(np.sum(f(FIVE.copy())), 1))
 leftover.holds(
     "the five particles have 0, .125, .375, .3, .2",
-    lambda f: bool(np.allclose(f(FIVE.copy()), [0, 0.125, 0.375, 0.3, 0.2], atol=1e-6)),
+    lambda f: np.allclose(f(FIVE.copy()), [0, 0.125, 0.375, 0.3, 0.2], atol=1e-6),
 )
 
 
@@ -243,17 +243,17 @@ def clock_x(rng, N=100):
     return age
 
 
-clock_x.holds("whole numbers of at least 1", lambda x: bool((x >= 1).all() and (x % 1 == 0).all()))
-clock_x.holds("mean of the runs between 95 and 185", lambda x: bool(95 < x.mean() < 185))
-clock_x.holds("the runs differ, as luck does", lambda x: bool(x.std() > 20))
+clock_x.holds("whole numbers of at least 1", lambda x: (x >= 1).all() and (x % 1 == 0).all())
+clock_x.holds("mean of the runs between 95 and 185", lambda x: 95 < x.mean() < 185)
+clock_x.holds("the runs differ, as luck does", lambda x: x.std() > 20)
 clock_x.wrong("""half: starts with 50 particles in all, not 50 in each cluster
     How many particles are there together?
     N is 100.
-    k = 50; N = 100.""")(lambda rng: clock_x(rng, 50), when=lambda x: bool(45 < x.mean() < 95))
+    k = 50; N = 100.""")(lambda rng: clock_x(rng, 50), when=lambda x: 45 < x.mean() < 95)
 clock_x.wrong("""double: starts with 100 particles in each cluster
     How many particles are there together?
     N is 100.
-    k = 50; N = 100.""")(lambda rng: clock_x(rng, 200), when=lambda x: bool(x.mean() > 200))
+    k = 50; N = 100.""")(lambda rng: clock_x(rng, 200), when=lambda x: x.mean() > 200)
 clock_x.refuses("a constant at the right value")(lambda rng: 137)
 
 
@@ -275,21 +275,20 @@ def best_x(rng, scheme=pf.systematic, M=1000):
     return np.sum(scheme(w, rng) % 2 == 0)
 
 
-best_x.holds("mean between 600 and 900", lambda x: bool(600 < x.mean() < 900))
-best_x.holds("variance above 20,000", lambda x: bool(x.var() > 20_000))
+best_x.holds("mean between 600 and 900", lambda x: 600 < x.mean() < 900)
+best_x.holds("variance above 20,000", lambda x: x.var() > 20_000)
 best_x.wrong("""multinomial: uses a scheme whose points are independent: its total hardly
          scatters
     Which scheme is the claim about?
     Use pf.systematic, and do not shuffle.
     np.sum(pf.systematic(w, rng) % 2 == 0)""")(
-    lambda rng: best_x(rng, pf.multinomial),
-    when=lambda x: bool(x.var() < 2000 and 700 < x.mean() < 800),
+    lambda rng: best_x(rng, pf.multinomial), when=lambda x: x.var() < 2000 and 700 < x.mean() < 800
 )
 best_x.refuses("a constant at the right value", named="multinomial")(lambda rng: 750)
 best_x.wrong("""light: counts the light particles
     Which indices are heavy?
     The first weight is 1.5: even indices are heavy.
-    % 2 == 0""")(lambda rng: 1000 - best_x(rng), when=lambda x: bool(x.mean() < 500))
+    % 2 == 0""")(lambda rng: 1000 - best_x(rng), when=lambda x: x.mean() < 500)
 
 JUDGE = Question("Judgement")
 

@@ -231,6 +231,11 @@ def test_whose_file_is_it(path, name):
     assert student(Path(path), "lab3") == name
 
 
+def test_a_chapter_in_a_folder_is_named_by_the_folder():
+    for file in ("08_particle_filter.ipynb", "particle_filter_answers.json"):
+        assert student(Path("ann") / file, "particle_filter") == "ann"
+
+
 def test_the_bar_ends_at_all(capsys):
     bar = Bar(3)
     for k in range(3):

@@ -32,6 +32,11 @@ def test_a_check_is_found_by_its_call(live_page):
     assert not live_page.is_check("lab.check(", "lab", "q2")
 
 
+def test_a_lab_that_was_renamed_says_how_it_was_called(live_page):
+    cells = [cell("from pfkit.labs import resampling as lab"), cell("hand = ...", answer="hand")]
+    assert live_page.read_lab(cells)["former"] == "ch07"
+
+
 def test_cells_of_a_lab(live_page):
     cells = [
         cell("from pfkit.labs import lab3 as lab"),
@@ -43,6 +48,7 @@ def test_cells_of_a_lab(live_page):
     ]
     found = live_page.read_lab(cells)
     assert found["lab"] == "lab3" and found["alias"] == "lab"
+    assert found["former"] is None
     kinds = [c["kind"] for c in found["cells"]]
     assert kinds == ["code", "answer", "check", "check", "code"]
     assert [c["index"] for c in found["cells"]] == [0, 1, 2, 3, 5]

@@ -202,7 +202,7 @@ class Batch:
 
 def student(name: Path, lab: str) -> str:
     """``ann.ipynb`` and ``ann/lab3_final.ipynb`` are ann's; other folders stay in the name."""
-    stem = re.sub(r"[\W_]+", "", name.stem.lower())
+    stem, lab = (re.sub(r"^\d+|[\W_]+", "", words.lower()) for words in (name.stem, lab))
     same = len(name.parts) > 1 and stem.startswith(lab)
     return (name.parent if same else name.with_suffix("")).as_posix()
 

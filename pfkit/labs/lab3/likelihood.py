@@ -80,7 +80,7 @@ log_likelihood.holds(
 )
 log_likelihood.holds(
     "finite and ordered at 5,000 and 10,000 sigma",
-    lambda f: bool(
+    lambda f: (
         -np.inf
         < f(np.array([1e4, 0.0]), np.zeros((2, 1)), 1.0)[0]
         < f(np.array([5e3, 0.0]), np.zeros((2, 1)), 1.0)[0]

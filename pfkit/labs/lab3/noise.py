@@ -19,7 +19,7 @@ def _draws(f):
     """Does chance come from rng, and afresh at each call?"""
     one, two = rng_of(4), rng_of(4)
     first, again, second = (f(np.zeros((2, 5)), 1.0, rng) for rng in (one, two, one))
-    return bool(np.array_equal(first, again) and not np.array_equal(first, second))
+    return np.array_equal(first, again) and not np.array_equal(first, second)
 
 
 q6a = Choice("""pf.FixedTarget(sigma=2), pf.Position(sigma=3)

@@ -50,7 +50,7 @@ def _unbiased(scheme, w, runs=1500):
 
 def _floor_or_ceil(scheme, w):
     c, expected = _counts(scheme, w, 200), len(w) * w
-    return bool(((c >= np.floor(expected - 1e-9)) & (c <= np.ceil(expected + 1e-9))).all())
+    return ((c >= np.floor(expected - 1e-9)) & (c <= np.ceil(expected + 1e-9))).all()
 
 
 def _uses(scheme, w):
@@ -111,8 +111,7 @@ def systematic(w, rng):
 
 
 systematic.holds(
-    "M whole numbers between 0 and M - 1",
-    lambda f: bool((_counts(f, W, 20).sum(axis=1) == 5).all()),
+    "M whole numbers between 0 and M - 1", lambda f: (_counts(f, W, 20).sum(axis=1) == 5).all()
 )
 systematic.holds("one random number per call", lambda f: _uses(f, W))
 systematic.holds(
@@ -219,21 +218,19 @@ def residual(w, rng):
 
 
 residual.holds(
-    "M whole numbers between 0 and M - 1",
-    lambda f: bool((_counts(f, W, 20).sum(axis=1) == 5).all()),
+    "M whole numbers between 0 and M - 1", lambda f: (_counts(f, W, 20).sum(axis=1) == 5).all()
 )
 residual.holds(
-    "at least floor(M w) copies of each",
-    lambda f: bool((_counts(f, W8, 100) >= np.floor(8 * W8)).all()),
+    "at least floor(M w) copies of each", lambda f: (_counts(f, W8, 100) >= np.floor(8 * W8)).all()
 )
 residual.holds("M w copies on average", lambda f: _unbiased(f, W))
 residual.holds(
     "the rest is drawn one by one: sometimes a particle gets two of it",
-    lambda f: bool((_counts(f, W3, 100) >= np.floor(3 * W3) + 2).any()),
+    lambda f: (_counts(f, W3, 100) >= np.floor(3 * W3) + 2).any(),
 )
 residual.holds(
     "equal weights: one copy of each, nothing left to draw",
-    lambda f: bool((_counts(f, np.full(4, 0.25), 5) == 1).all()),
+    lambda f: (_counts(f, np.full(4, 0.25), 5) == 1).all(),
 )
 
 

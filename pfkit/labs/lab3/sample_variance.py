@@ -26,7 +26,7 @@ def _copies(f, rng, runs):
 def _multinomial_variance(x):
     """Each variance within 30 % of M w (1 - w): five standard errors for 1,000 runs."""
     ratio = x[:, 0].var(axis=0, ddof=1) / (5 * W5 * (1 - W5))
-    return bool((np.abs(ratio - 1) < 0.3).all())
+    return (np.abs(ratio - 1) < 0.3).all()
 
 
 @experiment(
@@ -51,9 +51,9 @@ def copies(scheme, w, rng, runs):
 
 copies.holds(
     "mean number of copies is M w, both schemes",
-    lambda x: bool(
-        (np.abs(x.mean(0) - 5 * W5) <= 5 * x.std(0, ddof=1) / math.sqrt(len(x)) + 1e-12).all()
-    ),
+    lambda x: (
+        np.abs(x.mean(0) - 5 * W5) <= 5 * x.std(0, ddof=1) / math.sqrt(len(x)) + 1e-12
+    ).all(),
 )
 copies.holds("multinomial variance is M w (1 - w)", _multinomial_variance)
 copies.holds(
@@ -64,7 +64,7 @@ copies.wrong("""shares: gives shares of the set, not numbers of copies
     Copies are whole numbers that sum to M.
     Do not divide by M.""")(
     lambda s, w, rng, runs: copies(s, w, rng, runs) / len(w),
-    when=lambda x: bool(np.allclose(x.sum(axis=-1), 1)),
+    when=lambda x: np.allclose(x.sum(axis=-1), 1),
 )
 copies.wrong("""yes-or-no: tells only whether a particle survived
     Can a particle have two copies in your table?
@@ -78,7 +78,7 @@ copies.wrong("""one-call: calls the scheme once and repeats the result
     Each run needs a call of its own.
     Put scheme(w, rng) inside the loop over runs.""")(
     lambda s, w, rng, runs: np.tile(copies(s, w, rng, 1), (runs, 1)),
-    when=lambda x: bool((x == x[0]).all()),
+    when=lambda x: (x == x[0]).all(),
 )
 
 
@@ -109,7 +109,7 @@ def final_error(threshold, rng, runs):
 
 final_error.holds(
     "the errors average out: mean within 5 standard errors of 0",
-    lambda x: bool((np.abs(x.mean(0)) < 5 * x.std(0, ddof=1) / math.sqrt(len(x)) + 0.1).all()),
+    lambda x: (np.abs(x.mean(0)) < 5 * x.std(0, ddof=1) / math.sqrt(len(x)) + 0.1).all(),
 )
 final_error.holds(
     "always resampling: more than twice the variance",

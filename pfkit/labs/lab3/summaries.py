@@ -30,7 +30,7 @@ def _enough(f):
 
 
 def _same_angle(a, b):
-    return bool(abs(pf.wrap(np.asarray(a, dtype=float) - b)) < 1e-9)
+    return abs(pf.wrap(np.asarray(a, dtype=float) - b)) < 1e-9
 
 
 def _turned(f):
@@ -95,7 +95,7 @@ def _modes(f):
 
 def _stray(f):
     x = np.asarray(f(np.random.default_rng(5)), dtype=float)
-    return bool(np.abs(x - np.median(x)).max() > 8 * np.median(np.abs(x - np.median(x))))
+    return np.abs(x - np.median(x)).max() > 8 * np.median(np.abs(x - np.median(x)))
 
 
 two_places.wrong("""one-hill: is a single hill, and its mean is its best point

@@ -44,10 +44,10 @@ _SURE, _MIXED = np.array([1e-3, 2e-3, 4e-4]), np.array([3e-2, 1e-9, 1e-9, 1e-9])
 )
 def gate(likelihood, threshold):
     """Reject a measurement whose mean likelihood over the particles is below the threshold."""
-    return bool(np.mean(likelihood) < threshold)
+    return np.mean(likelihood) < threshold
 
 
-gate.holds("an improbable measurement is rejected", lambda f: bool(f(_SURE, 0.1)))
+gate.holds("an improbable measurement is rejected", lambda f: f(_SURE, 0.1))
 gate.holds("a probable one is kept", lambda f: not f(_SURE, 1e-4))
 gate.holds(
     "one lucky particle of four does not decide alone",

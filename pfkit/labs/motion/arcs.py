@@ -47,7 +47,7 @@ def _call(f, pose, v, omega, dt):
 
 
 def near(found, wanted, atol=1e-8):
-    return bool(
+    return (
         np.shape(found) == np.shape(wanted)
         and np.allclose(found[:2], wanted[:2], rtol=0, atol=atol)
         and np.allclose(np.cos(found[2] - wanted[2]), 1, rtol=0, atol=1e-12)
@@ -64,7 +64,7 @@ def _straight(f):
 
 def _slow(f):
     found = _call(f, (0.0, 0.0, 0.2), 1.0, 4e-3, 1.0)
-    return bool(np.isclose(found[2], 0.204, rtol=0, atol=1e-9))
+    return np.isclose(found[2], 0.204, rtol=0, atol=1e-9)
 
 
 def _tiny(f):
@@ -88,7 +88,7 @@ def _breaks(test, f):
 
 def _wrapped(f):
     found = _call(f, (0.0, 0.0, 3.0), 1.0, 1.0, 0.5)[2]
-    return bool(-np.pi < found <= np.pi)
+    return -np.pi < found <= np.pi
 
 
 def naive(pose, v, omega, dt):

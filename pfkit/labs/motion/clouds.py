@@ -40,7 +40,7 @@ def _noise_free(f):
 
 def _own(f):
     x, _, theta = _ends(f, (1.0, 0.3, 0.5), (0.02, 0.01, 0.05, 0.05), 50)
-    return bool(np.unique(x).size == 50 and np.unique(theta).size == 50)
+    return np.unique(x).size == 50 and np.unique(theta).size == 50
 
 
 def _speed(f):
@@ -53,12 +53,12 @@ def _cross(f):
 
 
 def _still(f):
-    return bool(np.abs(_ends(f, (0.0, 0.0, 0.5), (0.1, 0.1, 0.1, 0.1), 20)).max() == 0)
+    return np.abs(_ends(f, (0.0, 0.0, 0.5), (0.1, 0.1, 0.1, 0.1), 20)).max() == 0
 
 
 def _bends(f):
     x, y, theta = _ends(f, (1.0, 0.0, 1.0), (0, 0, 0.05, 0), 200)
-    return bool(
+    return (
         np.allclose(x, sinc(theta / 2) * np.cos(theta / 2), atol=1e-9)
         and np.allclose(y, sinc(theta / 2) * np.sin(theta / 2), atol=1e-9)
         and theta.std() > 0

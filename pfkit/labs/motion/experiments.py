@@ -42,23 +42,23 @@ def rigid_x(rng):
     return own / together
 
 
-rigid_x.holds("the mean ratio lies between 8.5 and 10.5", lambda x: bool(8.5 < x.mean() < 10.5))
-rigid_x.holds("the runs differ", lambda x: bool(x.std() > 1e-6))
+rigid_x.holds("the mean ratio lies between 8.5 and 10.5", lambda x: 8.5 < x.mean() < 10.5)
+rigid_x.holds("the runs differ", lambda x: x.std() > 1e-6)
 rigid_x.wrong("""upside-down: divides the common spread by the own one
     Which cloud is the wide one?
     The ratio should say how much wider own errors make the cloud.
-    Return own / common.""")(lambda rng: 1 / rigid_x(rng), when=lambda x: bool((x < 0.5).all()))
+    Return own / common.""")(lambda rng: 1 / rigid_x(rng), when=lambda x: (x < 0.5).all())
 rigid_x.wrong("""both-own: gives both clouds errors of their own
     How many random numbers does a step of the second cloud draw?
     Three numbers for the whole cloud, not three for each particle.
     Use together(cloud, u, rng) for the second cloud.""")(
-    lambda rng: _spreads(rng)[0] / _spreads(rng)[0], when=lambda x: bool(0.6 < x.mean() < 1.6)
+    lambda rng: _spreads(rng)[0] / _spreads(rng)[0], when=lambda x: 0.6 < x.mean() < 1.6
 )
 rigid_x.wrong("""variances: compares variances instead of standard deviations
     Is your ratio one of lengths or of squared lengths?
     A spread is a length: take the root.
     np.sqrt(cloud[:2].var(axis=1).sum())""")(
-    lambda rng: rigid_x(rng) ** 2, when=lambda x: bool(60 < x.mean() < 220)
+    lambda rng: rigid_x(rng) ** 2, when=lambda x: 60 < x.mean() < 220
 )
 
 
@@ -92,25 +92,23 @@ def split_x(rng, **kwargs):
     return whole / parts
 
 
-split_x.holds("the mean ratio lies between 3.8 and 4.2", lambda x: bool(3.8 < x.mean() < 4.2))
-split_x.holds("the runs differ", lambda x: bool(x.std() > 1e-6))
+split_x.holds("the mean ratio lies between 3.8 and 4.2", lambda x: 3.8 < x.mean() < 4.2)
+split_x.holds("the runs differ", lambda x: x.std() > 1e-6)
 split_x.wrong("""variances: compares variances
     Is it a ratio of lengths or of squared lengths?
     The prediction speaks of standard deviations.
-    Use .std(), not .var().""")(
-    lambda rng: split_x(rng) ** 2, when=lambda x: bool(14 < x.mean() < 18)
-)
+    Use .std(), not .var().""")(lambda rng: split_x(rng) ** 2, when=lambda x: 14 < x.mean() < 18)
 split_x.wrong("""upside-down: finds the larger spread after the sixteen steps
     Is the ratio turned over, or do your two drives last differently long?
     Sixteen steps of 4 / 16 s each; the spread of the single step goes on top.
     Return whole / parts, with dt = 4 and dt = 0.25.""")(
-    lambda rng: 1 / split_x(rng), when=lambda x: bool(0.2 < x.mean() < 0.3)
+    lambda rng: 1 / split_x(rng), when=lambda x: 0.2 < x.mean() < 0.3
 )
 split_x.wrong("""scaled: scales the noise with the number of steps
     Did you change alpha between the drives?
     The question is what happens to the same alpha.
     Keep alpha = (0.02, 0, 0, 0) for both.""")(
-    lambda rng: split_x(rng, scaled=True), when=lambda x: bool(0.9 < x.mean() < 1.1)
+    lambda rng: split_x(rng, scaled=True), when=lambda x: 0.9 < x.mean() < 1.1
 )
 
 why = Text(

@@ -24,7 +24,7 @@ wheels.wrong("""half-axle: takes half of the difference over the axle
 wheels.wrong("""sign: turns to the wrong side
     The right wheel is faster. To which side does the robot turn?
     To the left, and left is positive.
-    omega is right minus left.""")((1.0, -0.8, -1.25), when=lambda x: bool(abs(x[1] + 0.8) < 0.005))
+    omega is right minus left.""")((1.0, -0.8, -1.25), when=lambda x: abs(x[1] + 0.8) < 0.005)
 
 odometry = Numeric(
     """Turn, drive, turn
@@ -43,13 +43,13 @@ odometry.wrong("""map-direction: gives the direction on the map, not the turn
     Where does the robot look before it moves?
     It already looks at 90 degrees, so it has to turn less.
     Subtract the first heading from the direction of the way.""")(
-    (135.0, 1.414, 75.0), when=lambda x: bool(abs(x[0] - 135) < 0.1)
+    (135.0, 1.414, 75.0), when=lambda x: abs(x[0] - 135) < 0.1
 )
 odometry.wrong("""arctan: takes an arctangent that cannot tell front from back
     In which quadrant does the way (-1, 1) lie?
     arctan(1 / -1) and arctan(-1 / 1) are the same number.
     Use atan2(1, -1), which is 135 degrees.""")(
-    (-135.0, 1.414, -105.0), when=lambda x: bool(abs(x[0] + 135) < 0.1)
+    (-135.0, 1.414, -105.0), when=lambda x: abs(x[0] + 135) < 0.1
 )
 
 vehicle = Choice("""Which robot moves like the assignment's equation?

@@ -44,27 +44,26 @@ def average_x(rng):
     return mean / product
 
 
-average_x.holds("the averaged belief is the wider one in every run", lambda x: bool(x.min() > 1))
-average_x.holds("median ratio between 3 and 5", lambda x: bool(3 < np.median(x) < 5))
-average_x.holds("the runs differ", lambda x: bool(x.std() > 1e-6))
+average_x.holds("the averaged belief is the wider one in every run", lambda x: x.min() > 1)
+average_x.holds("median ratio between 3 and 5", lambda x: 3 < np.median(x) < 5)
+average_x.holds("the runs differ", lambda x: x.std() > 1e-6)
 average_x.wrong("""inverse: returns the ratio upside down
     Which belief is wider?
     Average over product was asked for.
     Turn the fraction over.""")(
-    lambda rng: 1 / average_x(rng), when=lambda x: bool((x < 1).all() and (x > 0).all())
+    lambda rng: 1 / average_x(rng), when=lambda x: (x < 1).all() and (x > 0).all()
 )
 average_x.wrong("""squared: compares variances, not standard deviations
     In which unit is your spread?
     The trace of a covariance is in square metres.
     Take the square root of the trace.""")(
-    lambda rng: average_x(rng) ** 2, when=lambda x: bool(8 < np.median(x) < 25)
+    lambda rng: average_x(rng) ** 2, when=lambda x: 8 < np.median(x) < 25
 )
 average_x.wrong("""one-landmark: uses one landmark only
     How many measurements enter your sum?
     Two landmarks, range and bearing each: four parts.
     Draw z with ids=[0, 1].""")(
-    lambda rng: float(np.divide(*_spreads(rng, 1)[::-1])),
-    when=lambda x: bool(1.4 < np.median(x) < 2.6),
+    lambda rng: float(np.divide(*_spreads(rng, 1)[::-1])), when=lambda x: 1.4 < np.median(x) < 2.6
 )
 
 
@@ -94,25 +93,23 @@ def beams_x(rng):
     return np.mean(_zeros(rng) == 0)
 
 
-beams_x.holds("shares between 0 and 1", lambda x: bool((x >= 0).all() and (x <= 1).all()))
-beams_x.holds("mean share between 0.45 and 0.75", lambda x: bool(0.45 < x.mean() < 0.75))
-beams_x.holds("the runs differ", lambda x: bool(x.std() > 1e-6))
+beams_x.holds("shares between 0 and 1", lambda x: (x >= 0).all() and (x <= 1).all())
+beams_x.holds("mean share between 0.45 and 0.75", lambda x: 0.45 < x.mean() < 0.75)
+beams_x.holds("the runs differ", lambda x: x.std() > 1e-6)
 beams_x.wrong("""logs: keeps the logarithms, which never underflow
     You did what a filter should do. What happens without it?
     Multiply the densities themselves here.
-    np.exp(...).prod(axis=0) == 0""")(lambda rng: 0.0, when=lambda x: bool((x == 0).all()))
+    np.exp(...).prod(axis=0) == 0""")(lambda rng: 0.0, when=lambda x: (x == 0).all())
 beams_x.wrong("""vague: uses a far wider sensor than 0.1 m
     Which standard deviation have your beams?
     0.1 m was asked for.
     pf.log_gaussian(error, 0.1)""")(
-    lambda rng: np.mean(_zeros(rng, sigma=0.25) == 0), when=lambda x: bool(0 < x.mean() < 0.35)
+    lambda rng: np.mean(_zeros(rng, sigma=0.25) == 0), when=lambda x: 0 < x.mean() < 0.35
 )
 beams_x.wrong("""count: returns a number of particles, not a share
     Can a share be 600?
     Divide by the number of particles.
-    np.mean, not np.sum""")(
-    lambda rng: np.sum(_zeros(rng) == 0), when=lambda x: bool((x > 1).any())
-)
+    np.mean, not np.sum""")(lambda rng: np.sum(_zeros(rng) == 0), when=lambda x: (x > 1).any())
 
 why = Text(
     """Why multiply, and why in logarithms?

@@ -48,7 +48,7 @@ def _seam(f):
 def _tiny(f):
     z, m, pose, _, _ = readings(4)
     found = np.asarray(f(z, m, pose, 1e-3, 1e-3))
-    return bool(np.isfinite(found).all())
+    return np.isfinite(found).all()
 
 
 @code(
@@ -126,7 +126,7 @@ def _no_constant(z, m, pose, sigma_r, sigma_phi):
     What is exp(-1000) in a computer?
     Never leave the logarithms.
     Add log densities; do not take the log of a product.""",
-    when=lambda f: bool(_scores(f) and not _tiny(f)),
+    when=lambda f: _scores(f) and not _tiny(f),
 )
 def underflow(z, m, pose, sigma_r, sigma_phi):
     with np.errstate(divide="ignore"):

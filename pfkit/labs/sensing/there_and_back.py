@@ -34,7 +34,7 @@ def _bearings(f):
 
 def _wrapped(f):
     phi = np.asarray(f(poses_at_random(3, 400), LANDMARK)[1])
-    return bool((phi > -np.pi - 1e-9).all() and (phi < np.pi + 1e-9).all())
+    return (phi > -np.pi - 1e-9).all() and (phi < np.pi + 1e-9).all()
 
 
 def _rigid(f):
