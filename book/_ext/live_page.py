@@ -30,7 +30,6 @@ Only pages with live parts load any of it.
 
 from __future__ import annotations
 
-import ast
 import hashlib
 import json
 import re
@@ -51,6 +50,8 @@ from pfkit.errors import PfkitError
 from pfkit.explore import scene as open_scene
 from pfkit.explore.record import record, to_script
 from pfkit.explore.still import to_svg
+from pfkit.labs import catalogue
+from pfkit.labs.grade.cells import VERBS, lab_calls, labs_imported
 from pfkit.labs.guard import PAGE_LIMIT
 from pfkit.labs.items import Choice, Prediction
 from pfkit.labs.progress import FORMER_NAMES
@@ -62,7 +63,6 @@ SITE = CACHE / "site"
 SCRIPTS = ("keys.js", "palette.js", "render.js", "explorable.js", "page.js")
 LAB_SCRIPTS = ("store.js", "choices.js", "lab.js")
 STUB = re.compile(r"^(\w+) = \.\.\.\s*(#.*)?$")  # an answer cell that waits for a letter
-LAB_IMPORT = re.compile(r"^\s*from\s+pfkit\.labs\s+import\s+(\w+)(?:\s+as\s+(\w+))?", re.M)
 
 
 class explorable(nodes.General, nodes.Element):
@@ -136,24 +136,6 @@ def visit_other(writer: Any, node: explorable) -> None:
 # ---- lab cells ------------------------------------------------------------------------------
 
 
-def is_check(source: str, lab: str, item: str) -> bool:
-    """Whether a cell calls ``lab.check("item", ...)``, or predict or answer."""
-    try:
-        calls = [n for n in ast.walk(ast.parse(source)) if isinstance(n, ast.Call)]
-    except SyntaxError:
-        return False
-    return any(
-        isinstance(c.func, ast.Attribute)
-        and isinstance(c.func.value, ast.Name)
-        and c.func.value.id == lab
-        and c.func.attr in ("check", "predict", "answer")
-        and bool(c.args)
-        and isinstance(c.args[0], ast.Constant)
-        and c.args[0].value == item
-        for c in calls
-    )
-
-
 def question(module: str, item: str, source: str) -> dict[str, Any]:
     """What the lab itself says of a question: its version, and the options it offers, if any."""
     found = import_module(f"pfkit.labs.{module}").LAB.items.get(item)
@@ -174,19 +156,19 @@ def read_lab(cells: list[dict[str, Any]]) -> dict[str, Any] | None:
     """The code cells of a notebook as a page needs them; None if it has nothing to answer."""
     code = [(i, c) for i, c in enumerate(cells) if c["cell_type"] == "code"]
     sources = {i: "".join(c["source"]) for i, c in code}
-    found = next((m for s in sources.values() if (m := LAB_IMPORT.search(s))), None)
+    imported = {n: a for s in sources.values() for n, a in labs_imported(s).items()}
+    found = next((pair for pair in imported.items() if pair[0] in catalogue.names()), None)
     if not found or not any("answer" in c["metadata"] for _, c in code):
         return None
-    module, alias = found.group(1), found.group(2) or found.group(1)
-    out, open_item = [], None
+    (module, alias), out, open_item = found, [], None
     for i, cell in code:
         entry: dict[str, Any] = {"index": i, "source": sources[i], "kind": "code"}
         item = cell["metadata"].get("answer")
         if item:
             entry.update(kind="answer", item=item, **question(module, item, sources[i]))
             open_item = item
-        elif cell["metadata"].get("check") or (
-            open_item and is_check(sources[i], alias, open_item)
+        elif cell["metadata"].get("check") or any(
+            verb in VERBS and asked == open_item for verb, asked, _ in lab_calls(sources[i], alias)
         ):
             entry.update(kind="check", item=cell["metadata"].get("check", open_item))
         out.append(entry)

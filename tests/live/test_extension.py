@@ -23,13 +23,21 @@ def cell(source, **metadata):
     return {"cell_type": "code", "source": source, "metadata": metadata}
 
 
-def test_a_check_is_found_by_its_call(live_page):
-    assert live_page.is_check('lab.check("q2", f)', "lab", "q2")
-    assert not live_page.is_check('lab.check("q3", f)', "lab", "q2")
-    assert not live_page.is_check('other.check("q2", f)', "lab", "q2")
-    assert live_page.is_check('lab.predict("q2", p)', "lab", "q2")
-    assert not live_page.is_check('lab.use("q2", f)', "lab", "q2")
-    assert not live_page.is_check("lab.check(", "lab", "q2")
+CALLS = [
+    ('task.check("p1a", f)', "check"),
+    ('task.predict("p1a", f)', "check"),
+    ('task.check("p1b", f)', "code"),
+    ('other.check("p1a", f)', "code"),
+    ('task.use("p1a", f)', "code"),
+    ("task.check(", "code"),
+]
+
+
+@pytest.mark.parametrize(("call", "kind"), CALLS)
+def test_a_check_is_found_by_its_call(live_page, call, kind):
+    cells = [cell("from pfkit.labs import target, lab3 as task"), cell("f = ...", answer="p1a")]
+    found = live_page.read_lab([*cells, cell(call)])
+    assert (found["lab"], found["alias"], found["cells"][2]["kind"]) == ("lab3", "task", kind)
 
 
 def test_a_lab_that_was_renamed_says_how_it_was_called(live_page):

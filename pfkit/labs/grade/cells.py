@@ -7,15 +7,16 @@ import ast
 from collections.abc import Iterator
 from typing import Any
 
-from pfkit.labs.names import bound_and_used
+from pfkit.labs.names import UNREADABLE, bound_and_used
 
+VERBS = {"check", "predict", "answer"}
 MODULES = {"np", "pf", "plt", "lab", "plotting"}  # a call of theirs changes no name of the cell
 
 
 def parsed(source: str) -> ast.Module:
     try:
         return ast.parse(source)
-    except (SyntaxError, ValueError, RecursionError, MemoryError):
+    except UNREADABLE:
         return ast.Module([], [])
 
 
@@ -28,18 +29,18 @@ def code_cells(book: dict[str, Any]) -> list[tuple[str, str]]:
     ]
 
 
-def labs_imported(source: str) -> set[str]:
-    """Modules of questions that a cell imports: ``from pfkit.labs import lab3 as lab``."""
+def labs_imported(source: str) -> dict[str, str]:
+    """``{"lab3": "lab"}`` of a cell that holds ``from pfkit.labs import lab3 as lab``."""
     nodes = ast.walk(parsed(source))
     return {
-        alias.name
+        alias.name: alias.asname or alias.name
         for node in nodes
         if isinstance(node, ast.ImportFrom) and node.module == "pfkit.labs"
         for alias in node.names
     }
 
 
-def lab_calls(source: str) -> list[tuple[str, str, str]]:
+def lab_calls(source: str, lab: str = "lab") -> list[tuple[str, str, str]]:
     """Return (verb, item, answer expression) of each call such as ``lab.check("q1", q1)``."""
     return [
         (node.func.attr, str(node.args[0].value), ast.unparse(node.args[1]))
@@ -47,7 +48,7 @@ def lab_calls(source: str) -> list[tuple[str, str, str]]:
         if isinstance(node, ast.Call)
         and isinstance(node.func, ast.Attribute)
         and isinstance(node.func.value, ast.Name)
-        and node.func.value.id == "lab"
+        and node.func.value.id == lab
         and len(node.args) == 2
         and isinstance(node.args[0], ast.Constant)
     ]

@@ -10,12 +10,18 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from pfkit.labs import catalogue
-from pfkit.labs.grade.cells import code_cells, lab_calls, names_changed, names_needed, surely_bound
+from pfkit.labs.grade.cells import (
+    VERBS,
+    code_cells,
+    lab_calls,
+    names_changed,
+    names_needed,
+    surely_bound,
+)
 from pfkit.labs.grade.submission import Answers
 from pfkit.labs.lab import Lab
 
 ROOT = Path(__file__).resolve().parents[3]
-VERBS = {"check", "predict", "answer"}
 
 
 class NoSuchLab(ValueError):
