@@ -232,7 +232,7 @@ def test_whose_file_is_it(path, name):
 
 
 def test_a_chapter_in_a_folder_is_named_by_the_folder():
-    for file in ("08_particle_filter.ipynb", "particle_filter_answers.json"):
+    for file in ("08 Particle filter.ipynb", "particle_filter_answers.json"):
         assert student(Path("ann") / file, "particle_filter") == "ann"
 
 
