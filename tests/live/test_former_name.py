@@ -34,7 +34,7 @@ def opened(open_page, kept):
 
 
 def code_of(tab, item):
-    return tab.evaluate(f"PF.lab.editors.find(e => e.cell.item === '{item}').get()")
+    return tab.evaluate("item => PF.lab.text(item)", item)
 
 
 def test_what_was_kept_under_the_former_name_is_there(open_page):
@@ -65,9 +65,16 @@ def test_what_was_kept_under_the_former_name_is_there(open_page):
 def test_a_file_exported_under_the_former_name_is_read(open_page):
     page = opened(open_page, {})
     answers = {"p5b": {"source": CODE, "version": "x"}}
-    for name, brought in (("ch98", ""), ("ch99", CODE)):
-        text = json.dumps({"schema": 1, "lab": name, "answers": answers, "predictions": {}})
-        page.tab.evaluate("text => PF.lab.importAnswers(text)", text)
-        assert (code_of(page.tab, "p5b") == CODE) is bool(brought)
-    assert page.tab.evaluate("PF.lab.exportAnswers().lab") == "lab3"
+    note = page.tab.locator(".pf-labbar .pf-note")
+    for name, told in (("ch98", "Nothing was imported"), ("ch99", "Imported 1")):
+        data = {"schema": 1, "lab": name, "answers": answers, "predictions": {}}
+        page.tab.locator("#pf-import").set_input_files(
+            {
+                "name": "a.json",
+                "mimeType": "application/json",
+                "buffer": json.dumps(data).encode(),
+            }
+        )
+        note.filter(has_text=told).wait_for()
+        assert (code_of(page.tab, "p5b") == CODE) is (name == "ch99")
     page.tab.context.close()
