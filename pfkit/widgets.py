@@ -21,7 +21,7 @@ from importlib.resources import files
 from typing import Any
 
 from pfkit import palette
-from pfkit.explore import scene
+from pfkit.explore import FRONT_END, scene
 from pfkit.explore.host import Host
 
 GLUE = """
@@ -112,7 +112,7 @@ def explore(name: str, panel: str | None = None, seed: int = 1) -> Any:
 def _front_end() -> tuple[str, str]:
     """Script and style of the widget: the page's own files, and the glue to the kernel."""
     web = files("pfkit.explore") / "web"
-    scripts = [(web / name).read_text(encoding="utf-8") for name in ("render.js", "explorable.js")]
+    scripts = [(web / name).read_text(encoding="utf-8") for name in FRONT_END]
     style = (web / "explorable.css").read_text(encoding="utf-8")
     return "\n".join([palette.script(), *scripts, GLUE]), style
 

@@ -1,23 +1,17 @@
 """Sphinx extension: explorables and lab cells that compute in the page.
 
-In a chapter, an explorable is a directive in a markdown cell. Its content are its guided missions;
-without content the scene's own missions appear::
+In a chapter, an explorable is a directive in a markdown cell::
 
     ```{explorable} comb
     :panel: comb
     :seed: 7
     :alt: One bar of weights and five rows of teeth.
-
-    1. Watch ten draws ...
-    2. Choose equal weights ...
-    3. Follow the family tree ...
     ```
 
-`panel`, `seed` and `alt` may be left out; the scene knows good ones. The scene can tell when its
-own missions are done and ticks them off; if your three ask for the same deeds in your own words, in
-the same order, add ``:ticks:``. A recorded run and a still are
-made here, by the scene itself, and kept in .cache/live/runs until pfkit changes. They need neither
-Node nor a network. What computes (Pyodide and so on) comes from tools/live/build.py; if that is not
+`panel`, `seed` and `alt` may be left out; the scene knows good ones. Its guided missions are the
+panel's own, which the scene ticks off when it sees them done. A recorded run and a still are made
+here, by the scene itself, and kept in .cache/live/runs until pfkit changes. They need neither Node
+nor a network. What computes (Pyodide and so on) comes from tools/live/build.py; if that is not
 there, the build says so and the pages keep recordings and stills.
 
 Cells of a notebook with the metadata ``answer`` become editors, and the check cells after them
@@ -47,6 +41,7 @@ from sphinx.util.docutils import SphinxDirective
 
 import pfkit
 from pfkit.errors import PfkitError
+from pfkit.explore import FRONT_END
 from pfkit.explore import scene as open_scene
 from pfkit.explore.record import record, to_script
 from pfkit.explore.still import to_svg
@@ -60,7 +55,7 @@ logger = logging.getLogger(__name__)
 ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
-SCRIPTS = ("keys.js", "palette.js", "render.js", "explorable.js", "page.js")
+SCRIPTS = ("keys.js", "palette.js", *FRONT_END, "page.js")
 LAB_SCRIPTS = ("store.js", "choices.js", "lab.js")
 STUB = re.compile(r"^(\w+) = \.\.\.\s*(#.*)?$")  # an answer cell that waits for a letter
 
@@ -73,13 +68,11 @@ class Explorable(SphinxDirective):
     """The directive `explorable`."""
 
     required_arguments = 1
-    has_content = True
     option_spec: ClassVar = {
         "panel": directives.unchanged,
         "seed": directives.nonnegative_int,
         "alt": directives.unchanged,
         "name": directives.unchanged,
-        "ticks": directives.flag,
     }
 
     def run(self) -> list[nodes.Node]:
@@ -98,9 +91,11 @@ class Explorable(SphinxDirective):
         )
         used[key] = [name, about["panel"], seed]
         node = explorable(key=key, title=about["title"], alt=alt, ident=ident, size=about["size"])
-        node["ticks"] = int("ticks" in self.options or not self.content)
         self.set_source_info(node)
-        self.state.nested_parse(self.content, self.content_offset, node)
+        missions = nodes.enumerated_list()
+        for mission in about["missions"]:
+            missions += nodes.list_item("", nodes.paragraph(text=mission["text"]))
+        node += missions
         return [node]
 
 
@@ -117,8 +112,7 @@ def visit_html(writer: Any, node: explorable) -> None:
     width, height = node["size"]
     writer.body.append(
         f'<div class="pf-explorable" role="group" id="{escape(node["ident"])}" '
-        f'aria-label="{escape(node["title"])}" data-recording="{escape(node["key"])}" '
-        f'data-ticks="{node["ticks"]}">\n'
+        f'aria-label="{escape(node["title"])}" data-recording="{escape(node["key"])}">\n'
         f'<p class="pf-title">{escape(node["title"])}</p>\n'
         f'<img class="pf-still" src="{prefix}-runs/{escape(node["key"])}.svg" width="{width}" '
         f'height="{height}" alt="{escape(node["alt"])}">\n<div class="pf-missions">\n'

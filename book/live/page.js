@@ -1,5 +1,5 @@
-/* Brings the explorables of a book page to life. Loaded, with its two companions render.js and
-   explorable.js, only by pages that have one; see book/_ext/live_page.py. */
+/* Brings the explorables of a book page to life. Loaded, after the scripts of pfkit/explore/web, only
+   by pages that have one; see book/_ext/live_page.py. */
 (function (PF) {
   "use strict";
 
@@ -8,7 +8,9 @@
   const VERSION = me.dataset.version || "0";
   const LIVE = me.dataset.live === "1";
   const FROM_FOLDER = location.protocol === "file:";
+  const PATIENCE = { seconds: 15 }; // without a byte; then the download counts as stalled
   PF.base = BASE;
+  PF.patience = PATIENCE;
 
   PF.loadScript = function (name) {
     return new Promise((resolve, reject) => {
@@ -43,7 +45,13 @@
 
     onProgress(listener) { this.listeners.add(listener); }
 
-    progress(text, fraction) { for (const l of this.listeners) l(text, fraction); }
+    progress(text, fraction, loading) {
+      for (const l of this.listeners) l(text, fraction);
+      clearTimeout(this.alarm);
+      if (!loading) return;
+      const reason = `nothing arrived for ${PATIENCE.seconds} seconds. Is the network there?`;
+      this.alarm = setTimeout(() => this.stop(reason), 1000 * PATIENCE.seconds);
+    }
 
     start() {
       this.ready = this.ready || this.boot().catch((e) => { this.stop(); throw e; });
@@ -65,10 +73,10 @@
           this.progress("Unpacking Python", 0.1 + (0.6 * (k + 1)) / names.length);
         }
         url = URL.createObjectURL(new Blob([message.files["worker.js"]], { type: "text/javascript" }));
-      }
+      } else this.progress("Loading Python", 0, true);
       this.worker = new Worker(url);
       this.worker.onmessage = ({ data }) => {
-        if (data.progress) return this.progress(data.progress, data.fraction);
+        if (data.progress) return this.progress(data.progress, data.fraction, data.loading);
         const waiting = this.waiting.get(data.id);
         this.waiting.delete(data.id);
         if (!waiting) return;
@@ -76,7 +84,7 @@
         else waiting.resolve(data.ok);
       };
       this.worker.onerror = (e) => {
-        for (const w of this.waiting.values()) w.reject(new Error(e.message || "Python stopped"));
+        for (const w of this.waiting.values()) w.reject(new Error(e.message || "it could not be loaded"));
         this.waiting.clear();
       };
       await this.send({ do: "boot", ...message }, Object.values(message.files || {}));
@@ -97,9 +105,10 @@
     }
 
     /* The only way to end a loop in Python: end the worker. The next request boots another. */
-    stop() {
+    stop(reason) {
+      clearTimeout(this.alarm);
       if (this.worker) this.worker.terminate();
-      for (const w of this.waiting.values()) w.reject(new Error("stopped"));
+      for (const w of this.waiting.values()) w.reject(new Error(reason || "stopped"));
       this.waiting.clear();
       this.ready = this.worker = null;
     }
@@ -108,8 +117,7 @@
   const scenes = new PF.Python("scenes");
   async function engine(progress) {
     scenes.onProgress(progress);
-    await scenes.start();
-    scenes.listeners.delete(progress);
+    await scenes.start().finally(() => scenes.listeners.delete(progress));
     return {
       open: async (key, name, panel, seed) =>
         JSON.parse(await scenes.ask({ do: "open", key, name, panel, seed })),
@@ -141,7 +149,6 @@
     const explorable = new PF.Explorable(root, {
       about: recording.about, seed: recording.about.seed, values: recording.values, recording,
       key: "s" + k, id: root.id, link: true, engine,
-      missions: root.querySelector(".pf-missions"), ticks: root.dataset.ticks === "1",
     });
     root.pfExplorable = explorable;
     const state = stateFromAddress();

@@ -1,7 +1,8 @@
 /* Python in a worker. Two kinds of page part use it, each with a worker of its own: explorables
    (kind "scenes") and lab cells (kind "cells"), so that a reader's endless loop stops only itself.
 
-   Messages in: { id, do, ... }; out: { id, ok | error } and { progress, fraction }.
+   Messages in: { id, do, ... }; out: { id, ok | error } and { progress, fraction, loading }, the last
+   true while bytes are expected from the network.
    On a web host the files are fetched; from a folder the page hands them over as ArrayBuffers. */
 "use strict";
 
@@ -9,20 +10,28 @@ const MOST = 1e9; // bytes: beyond it Python gets a MemoryError, and the machine
 
 let python, host, cells;
 
-function tell(progress, fraction) { postMessage({ progress, fraction }); }
+function tell(progress, fraction, loading) { postMessage({ progress, fraction, loading }); }
 
-async function fetched(base, version, sizes, name, onBytes) {
-  const response = await fetch(`${base}${name}?v=${version}`);
+/* The network in one sentence: browsers name a cut connection in many ways, none for readers. */
+function cut(name) { return () => { throw new Error(`${name}: the connection was cut`); }; }
+
+async function asked(base, version, name) {
+  const response = await fetch(`${base}${name}?v=${version}`).catch(cut(name));
   if (!response.ok) throw new Error(`${name} could not be fetched (${response.status})`);
-  const reader = response.body.getReader(), parts = [];
+  return response;
+}
+
+async function fetched(base, version, name, size, onBytes) {
+  const reader = (await asked(base, version, name)).body.getReader(), parts = [];
   let got = 0;
   for (;;) {
-    const { done, value } = await reader.read();
+    const { done, value } = await reader.read().catch(cut(name));
     if (done) break;
     parts.push(value);
     got += value.length;
     onBytes(name, got);
   }
+  if (got !== size) cut(name)();
   const whole = new Uint8Array(got);
   let at = 0;
   for (const part of parts) { whole.set(part, at); at += part.length; }
@@ -31,15 +40,16 @@ async function fetched(base, version, sizes, name, onBytes) {
 
 async function collect({ base, version, files }) {
   if (files) return files;
-  const sizes = await (await fetch(`${base}manifest.json?v=${version}`)).json();
+  const sizes = await (await asked(base, version, "manifest.json")).json();
   const total = Object.values(sizes).reduce((a, b) => a + b, 0), have = {};
   const onBytes = (name, got) => {
     have[name] = got;
     const sum = Object.values(have).reduce((a, b) => a + b, 0);
-    tell(`Loading Python: ${(sum / 1e6).toFixed(1)} of ${(total / 1e6).toFixed(1)} MB`, (0.7 * sum) / total);
+    tell(`Loading Python: ${(sum / 1e6).toFixed(1)} of ${(total / 1e6).toFixed(1)} MB`, (0.7 * sum) / total,
+      sum < total);
   };
   const names = Object.keys(sizes);
-  const buffers = await Promise.all(names.map((n) => fetched(base, version, sizes, n, onBytes)));
+  const buffers = await Promise.all(names.map((n) => fetched(base, version, n, sizes[n], onBytes)));
   return Object.fromEntries(names.map((n, i) => [n, buffers[i]]));
 }
 

@@ -17,8 +17,9 @@ from importlib import import_module
 from pfkit.errors import ParameterError
 from pfkit.explore.scene import Control, Mission, Panel, Scene
 
-__all__ = ["SCENES", "Control", "Mission", "Panel", "Scene", "scene"]
+__all__ = ["FRONT_END", "SCENES", "Control", "Mission", "Panel", "Scene", "scene"]
 
+FRONT_END = ("render.js", "loading.js", "missions.js", "hand.js", "explorable.js")  # in web/
 SCENES = {
     "banana": ("pfkit.explore.banana", "Banana"),
     "comb": ("pfkit.explore.comb", "Comb"),

@@ -14,8 +14,9 @@ from typing import Any, ClassVar
 import numpy as np
 
 import pfkit as pf
+from pfkit.explore.camera import say_outside, wanted
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
 
 M = 300
 STEPS, DT = 24, 0.25
@@ -60,12 +61,12 @@ class Banana(Scene):
     record_steps = 36
     record_every = 1
     still_at = 24
-    units: ClassVar[dict[str, str]] = {
-        "along": "m",
-        "across": "m",
-        "hidden along": "m",
-        "hidden across": "m",
-        "mismatch": "cm",
+    gauges: ClassVar[dict[str, Gauge]] = {
+        "along": Gauge("m", 2),
+        "across": Gauge("m", 2),
+        "hidden along": Gauge("m", 2),
+        "hidden across": Gauge("m", 2),
+        "mismatch": Gauge("cm", 1),
     }
     all_controls = (
         Control(
@@ -134,6 +135,7 @@ class Banana(Scene):
             ("route", "a1", "a3", "a4", "a5", "guess"),
             missions=(
                 Mission(
+                    "one noise alone",
                     "Set three of the four noises to zero and move the fourth, one after the "
                     "other. Which ones bend the cloud, and which only stretch it?",
                     lambda s: (
@@ -142,10 +144,12 @@ class Banana(Scene):
                     ),
                 ),
                 Mission(
+                    "on top of it",
                     "Lay your cloud on the grey one: bring the mismatch under 2 cm.",
                     lambda s: s.mismatch < 0.02,
                 ),
                 Mission(
+                    "named",
                     "Name the robot. If two seem possible, choose another route: which route "
                     "tells B from C?",
                     lambda s: s.values["guess"] == s.hidden,
@@ -187,6 +191,9 @@ class Banana(Scene):
     def changed(self, name: str, value: Any) -> None:
         if name != "guess":
             self._mine()
+            self.tell(f"The mismatch is now {100 * self.mismatch:.1f} cm.")
+        elif value != "none":
+            self.tell(f"Robot {value} is {'right' if value == self.hidden else 'wrong'}.")
 
     def advance(self) -> None:
         pass
@@ -221,6 +228,8 @@ class Banana(Scene):
         span = {"straight": (-0.6, 9.4, -3, 3), "arc": (-3.2, 6.4, -0.8, 5.0)}.get(
             self.values["route"], (-0.8, 6.2, -1.2, 4.6)
         )
+        ends = np.concatenate((self.mine[-1], self.theirs[-1]), axis=1)
+        span = wanted(span, *ends[:2])
         pen.view((0.01, 0.02, 0.98, 0.96), span[:2], span[2:], equal=True)
         pen.line("muted", self.mean[:, 0], self.mean[:, 1], width=1.5, dash=4)
         for step in range(0, self.now, 8):
@@ -229,6 +238,7 @@ class Banana(Scene):
         pen.points("particles", x, y, size=5)
         pen.quills("estimate", *self.mine[self.now], length=8, size=4)
         pen.robots("truth", *self.mean[self.now], radius=0.14)
+        say_outside(pen, span, self.mine[self.now].mean(axis=1), "your cloud")
         left, top = span[0] + 0.1, span[3] - 0.2
         pen.points("particles", left, top, size=6)
         pen.text("ink", left + 0.15, top, "hidden robot", size=12)

@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
 from pfkit.particles.resampling import SCHEMES
 
 LETTERS = "12345"
@@ -80,7 +80,12 @@ class Comb(Scene):
     rate = 6.0
     record_steps = 60
     record_every = 1
-    units: ClassVar[dict[str, str]] = {"founders left": "of 24"}
+    gauges: ClassVar[dict[str, Gauge]] = {
+        "draws": Gauge(),
+        **dict.fromkeys(FIVE, Gauge("", 3)),
+        "generation": Gauge(),
+        "founders left": Gauge("of 24"),
+    }
     all_controls = (
         Control(
             "weights",
@@ -137,20 +142,26 @@ class Comb(Scene):
             ("weights", "n", "pace", "scheme", "spread"),
             missions=(
                 Mission(
-                    "Watch ten draws. Which scheme never gives particle 1 fewer than floor(n w) "
-                    "copies, nor more than one above? Then raise the draws per tick past 50 and "
-                    "compare the variance bars.",
-                    lambda s: s.draws > 500,
+                    "a hundred draws",
+                    "Draw a hundred times. Which counters settle first? Which schemes never give "
+                    "particle 1 more or fewer than two copies, and why?",
+                    lambda s: s.draws >= 100,
                 ),
                 Mission(
-                    "Choose equal weights. Which variances fall to exactly zero? Say why before "
-                    "you look.",
-                    lambda s: s.values["weights"] == "equal" and s.draws >= 20,
+                    "two halves",
+                    "Make two weights equal to one half and three zero. Which schemes can still "
+                    "lose one of the two?",
+                    lambda s: s.values["weights"] == "halves" and s.draws >= 20,
                 ),
                 Mission(
-                    "Follow the family tree under multinomial until one founder is left, "
-                    "though every weight is equal. Then choose systematic and wait for the same.",
-                    lambda s: s.values["scheme"] == "multinomial" and s.founders == 1,
+                    "two family trees",
+                    "Watch the family tree with equal weights. How many founders are left after "
+                    "ten generations of multinomial, and of systematic?",
+                    lambda s: (
+                        s.values["spread"] == 0
+                        and min(s.spent("scheme", k.__eq__) for k in ("multinomial", "systematic"))
+                        >= 10
+                    ),
                 ),
             ),
             alt="A bar of length one split between five particles in proportion to their "
@@ -180,7 +191,12 @@ class Comb(Scene):
         parents = FIVE[self.values["scheme"]](w / w.sum(), self.rng, FAMILY)
         self.parents.append(parents)
         self.family = self.family[parents]
-        self.founders = np.unique(self.family).size
+        before, self.founders = self.founders, np.unique(self.family).size
+        if self.founders < before and self.founders in (12, 6, 3, 1):
+            self.tell(
+                f"Generation {len(self.parents)} under {self.values['scheme']}: "
+                f"{self.founders} of {FAMILY} founders left."
+            )
 
     def _draw_once(self, show: bool = True) -> None:
         for name, scheme in FIVE.items():

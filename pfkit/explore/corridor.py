@@ -14,7 +14,7 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
 
 CELLS = 24
 DOORS = {
@@ -33,11 +33,12 @@ class Corridor(Scene):
     record_steps = 48
     record_every = 1
     still_at = 13
-    units: ClassVar[dict[str, str]] = {
-        "belief there": "%",
-        "its belief": "%",
-        "entropy": "bit",
-        "evidence": "p(z)",
+    gauges: ClassVar[dict[str, Gauge]] = {
+        "looks": Gauge(),
+        "belief there": Gauge("%", 1),
+        "its belief": Gauge("%", 1),
+        "entropy": Gauge("bit", 2),
+        "evidence": Gauge("p(z)", 3),
     }
     all_controls = (
         Control(
@@ -113,23 +114,27 @@ class Corridor(Scene):
             tuple(c.name for c in all_controls),
             missions=(
                 Mission(
-                    "Switch off “by itself” and restart. Look once. How many peaks has the belief, "
-                    "and why are they equally high?",
-                    lambda s: not s.values["auto"] and s.looks == 1 and s.moves == 0,
+                    "half the belief",
+                    "Step until one cell holds more than half of the belief. How many looks did "
+                    "it take? Which pattern of doors did it recognise?",
+                    lambda s: s.bel.max() > 0.5,
                 ),
                 Mission(
-                    "Make the hit rate equal to the false alarm rate and look ten times. What does "
-                    "the filter learn?",
+                    "a blind detector",
+                    "Set the hit rate equal to the false alarm rate. What does a look change now, "
+                    "and why?",
+                    lambda s: s.looks > 0 and np.ptp(s.likelihood) < 0.005,
+                ),
+                Mission(
+                    "shut out",
+                    "Switch off “the detector is as the sliders say”, set the false alarm rate to "
+                    "zero, and wait for a false alarm. Can the filter ever come back?",
                     lambda s: (
-                        s.looks >= 10
-                        and abs(s.values["hit"] - s.values["false"]) < 0.005
-                        and s.information < 0.01
+                        not s.values["honest"]
+                        and s.values["false"] == 0
+                        and s.saw is True
+                        and not s.is_door[s.robot]
                     ),
-                ),
-                Mission(
-                    "When the filter is sure, move fifteen times without looking. What happens to "
-                    "the entropy, and where does it stop?",
-                    lambda s: s.since_look >= 15,
                 ),
             ),
             alt="A ring corridor of 24 cells with doors and a robot. Three rows of bars: the "
@@ -145,8 +150,8 @@ class Corridor(Scene):
         self.predicted, self.likelihood = self.bel, np.ones(CELLS)
         self.saw: bool | None = None
         self.evidence = 1.0
-        self.looks = self.moves = self.since_look = 0
-        self.information = 0.0
+        self.looks = 0
+        self.told_half = False
         self.phase = "start"
 
     def advance(self) -> None:
@@ -156,10 +161,14 @@ class Corridor(Scene):
     def changed(self, name: str, value: Any) -> None:
         if name == "move":
             self._move()
+            self.tell(f"Moved: the entropy is {self._entropy():.2f} bit.")
         elif name == "look":
             self._look()
+            best = int(self.bel.argmax())
+            self.tell(f"Saw {self._seen()}: cell {best} has {100 * self.bel[best]:.0f} %.")
         elif name == "carry":
             self.robot = int(self.rng.integers(CELLS))
+            self.tell(f"The robot was carried to cell {self.robot}; the filter is not told.")
         elif name in ("slip", "skid") and self.values["slip"] + self.values["skid"] > 0.95:
             self.values["skid" if name == "slip" else "slip"] = 0.95 - self.values[name]
 
@@ -168,8 +177,6 @@ class Corridor(Scene):
         reach = kernel.size // 2
         self.robot = (self.robot + int(self.rng.choice(kernel.size, p=kernel)) - reach) % CELLS
         self.bel = self.predicted = pf.predict_1d(self.bel, kernel, ring=True)
-        self.moves += 1
-        self.since_look += 1
         self.phase = "move"
 
     def _look(self) -> None:
@@ -178,17 +185,27 @@ class Corridor(Scene):
         self.saw = bool(self.rng.random() < real[0 if self.is_door[self.robot] else 1])
         self.predicted = self.bel
         self.likelihood = pf.door_likelihood(self.is_door, self.saw, hit, false)
-        before = self._entropy()
         self.looks += 1
-        self.since_look = 0
         self.phase = "look"
         try:
             self.bel, evidence = pf.update_1d(self.bel, self.likelihood)
         except pf.DegenerateWeightsError:  # no cell can explain what was seen: show just that
             self.evidence = 0.0
+            self.tell("What was seen is impossible in every cell: the belief stays as it was.")
             return
         self.evidence = float(evidence)
-        self.information = before - self._entropy()
+        self._tell_best()
+
+    def _tell_best(self) -> None:
+        """One sentence when a cell comes to hold half of the belief, and when none does any more."""
+        best = int(self.bel.argmax())
+        half = bool(self.bel[best] > 0.5)
+        if half and not self.told_half:
+            there = "the robot is there" if best == self.robot else "the robot is elsewhere"
+            self.tell(f"Cell {best} holds {100 * self.bel[best]:.0f} % of the belief: {there}.")
+        elif self.told_half and not half:
+            self.tell("No cell holds half of the belief any more.")
+        self.told_half = half
 
     def _entropy(self) -> float:
         p = self.bel[self.bel > 0]

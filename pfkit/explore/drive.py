@@ -16,10 +16,11 @@ from typing import Any, ClassVar
 import numpy as np
 
 import pfkit as pf
+from pfkit.explore.camera import ease, wanted
 from pfkit.explore.drive_panels import CONTROLS, PANELS
 from pfkit.explore.drive_view import draw_drive
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Panel, Readouts, Scene
+from pfkit.explore.scene import Gauge, Panel, Readouts, Scene
 
 ALPHA = np.array([0.20, 0.02, 0.25, 0.20, 0.02, 0.02])
 ROUTES = {
@@ -27,6 +28,8 @@ ROUTES = {
     "square": np.array([[7.5, 12.5, 12.5, 7.5, 2.5, 2.5], [2.5, 2.5, 12.5, 12.5, 12.5, 2.5]]),
 }
 CARRIED = 3.0  # metres; a kidnapper takes the robot at least so far
+REACHED = 0.25  # metres; so near to where it was sent, the robot has arrived
+LOST = 1.5  # metres; a filter this wrong and still sure of itself is told of
 RANGE_MAX = 12.0  # metres; false readings are uniform up to here
 
 
@@ -41,19 +44,20 @@ class Drive(Scene):
     still_at = 150
     all_controls = CONTROLS
     panels: ClassVar[dict[str, Panel]] = PANELS
-    units: ClassVar[dict[str, str]] = {
-        "time": "s",
-        "error": "m",
-        "heading error": "°",
-        "spread": "m",
-        "ESS": "",
-        "resampled": "times",
-        "hypotheses": "alive",
-        "heaviest": "%",
-        "false readings": "",
-        "rejected": "",
-        "likely area": "m²",
-        "information": "nats",
+    gauges: ClassVar[dict[str, Gauge]] = {
+        "time": Gauge("s", 1),
+        "error": Gauge("m", 2),
+        "heading error": Gauge("°", 1),
+        "spread": Gauge("m", 2),
+        "ESS": Gauge("", 0),
+        "resampled": Gauge("times"),
+        "hypotheses": Gauge("alive"),
+        "heaviest": Gauge("%", 0),
+        "false readings": Gauge(),
+        "rejected": Gauge(),
+        "likely area": Gauge("m²", 2),
+        "information": Gauge("nats", 2),
+        "in sight": Gauge(),
     }
 
     # ---- the world --------------------------------------------------------------------------
@@ -74,11 +78,18 @@ class Drive(Scene):
     def _begin(self) -> None:
         """The filter's start, once the world and the robot's place in it are known."""
         self.goal: tuple[float, float] | None = None
+        self.carried_from: np.ndarray | None = None  # the robot is in the reader's hand
+        self.errand = False  # the goal came from a tap: it is dropped when reached
         self.z = np.empty((0, 0))
         self.z_age, self.false = 99, np.empty(0, bool)
         self.given: np.ndarray | None = None
         self.counts = {"resampled": 0, "false": 0, "rejected": 0}
         self.kidnapped = False
+        self.alive = self.most_alive = 0  # hypotheses, now and at most so far
+        self.rejected_before = 0  # readings, up to the kidnap
+        self.standing = self.told_standing = ""  # found, or wrong and sure of itself
+        self.lasting = 0.0  # seconds that it has stood so
+        self.view = self.bounds
         self.history: list[tuple[float, float]] = []
         self.trail: list[np.ndarray] = [self.truth.copy()]
         self._build()
@@ -136,6 +147,14 @@ class Drive(Scene):
         if self.ticks % 4 == 0:
             self.trail = [*self.trail[-220:], self.truth.copy()]
         self._judge_filter()
+        if v["show"] == "copies":
+            self._count_hypotheses()
+
+    def _count_hypotheses(self) -> None:
+        before, self.alive = self.alive, int((self.masses() > 0.02).sum())
+        self.most_alive = max(self.most_alive, self.alive)
+        if self.most_alive == 4 and self.alive < before:
+            self.tell(f"A hypothesis died: {self.alive} of 4 are alive.")
 
     def _command(self) -> np.ndarray:
         """What the robot is told: (v, omega, dt), by autopilot, keys or pointer."""
@@ -147,6 +166,8 @@ class Drive(Scene):
             return np.array([0.0, 0.0, self.dt])
         if self.goal is not None:
             dx, dy = self.goal[0] - self.truth[0], self.goal[1] - self.truth[1]
+            if self.errand and np.hypot(dx, dy) < REACHED:
+                self.goal = None
             turn = float(pf.wrap(np.arctan2(dy, dx) - self.truth[2]))
             speed = min(1.4, 2 * np.hypot(dx, dy)) * max(0.0, np.cos(turn))
             return np.array([speed, np.clip(4 * turn, -2.2, 2.2), self.dt])
@@ -176,6 +197,9 @@ class Drive(Scene):
         if v["do_resample"] and self.ess < v["threshold"] * self.bel.M:
             self.bel = pf.resample(self.bel, pf.SCHEMES[v["scheme"]], self.rng)
             self.counts["resampled"] += 1
+            if (n := self.counts["resampled"]) in (1, 10, 100, 1000):
+                times = "for the first time" if n == 1 else f"{n} times so far"
+                self.tell(f"Resampled {times}; the effective size was {self.ess:.0f}.")
             self._inject(v["fresh"] / 100)
 
     def _measure(self) -> np.ndarray:
@@ -202,8 +226,25 @@ class Drive(Scene):
         dx, dy, turn = self.estimate - self.truth
         self.error, self.turn_error = float(np.hypot(dx, dy)), abs(float(pf.wrap(turn)))
         self.spread = float(np.sqrt(self.Sigma[0, 0] + self.Sigma[1, 1]))
+        self._tell_standing()
+        self.view = ease(self.view, wanted(self.bounds, *self.bel.state[:2]), self.rate)
         if self.look_every == 1 or self.ticks % 4 == 0:
             self.history = [*self.history[-159:], (self.ess / self.bel.M, self.error)]
+
+    def _tell_standing(self) -> None:
+        """One sentence when the filter has found the robot, or is sure and wrong, for a second."""
+        if self.error < 0.4 and self.spread < 1.5:  # fresh particles keep the spread up
+            now, sentence = "found", f"Found: the mean is {self.error:.2f} m from the robot."
+        elif self.error > LOST and self.spread < 0.5:
+            now = "wrong"
+            sentence = f"Sure and wrong: {self.error:.1f} m off, spread {self.spread:.2f} m."
+        else:
+            now, sentence = "", ""
+        self.lasting = self.lasting + self.dt if now and now == self.standing else 0.0
+        self.standing = now
+        if self.lasting >= 1 and now != self.told_standing:
+            self.tell(sentence)
+            self.told_standing = now
 
     def copies(self) -> np.ndarray:
         """Poses (3, G) that the square cannot tell from the truth; the truth is the first."""
@@ -253,28 +294,48 @@ class Drive(Scene):
             poses = self.world.sample_poses(100, self.rng)
             away = np.hypot(*(poses[:2] - self.truth[:2, None]))
             to = poses[:, np.argmax(away > CARRIED)]
+        before = self.truth
         self.truth = self._inside(np.array(to))
-        self.kidnapped = True
+        self.kidnapped, self.rejected_before = True, self.counts["rejected"]
+        carried = np.hypot(*(self.truth - before)[:2])
+        self.told_standing = ""
+        self.tell(f"The robot was carried off, {carried:.1f} m; the filter is not told.")
         self.trail = [self.truth.copy()]
         self._judge_filter()
 
+    def handles(self) -> list[tuple[float, float]]:
+        places = self.landmarks.T if self.values["hand"] == "landmark" else self.truth[None, :2]
+        return [(float(x), float(y)) for x, y in places]
+
     def _touch(self, x: float, y: float, phase: float) -> None:
         hand, at = self.values["hand"], np.array([x, y])
+        press, drag, release, tap, cancel = (phase == k for k in range(5))
         if hand == "drive":
-            self.goal = None if phase == 2 else (x, y)
+            self.goal, self.errand = None if release or cancel else (x, y), tap
+        elif hand == "robot" and cancel:
+            self.truth = self.truth if self.carried_from is None else self.carried_from
+            self.carried_from = None
         elif hand == "robot":
-            moved = np.array([x, y, self.truth[2]])
-            if phase == 2 and self.values["show"] != "map":
-                self._carry_off(moved)
-            elif self.values["show"] == "map":
-                self.truth = self._inside(moved)
-        elif phase == 0:
+            self._carry(np.array([x, y, self.truth[2]]), drag, release or tap)
+        elif press or tap:
             gap = np.hypot(*(self.landmarks - at[:, None]))
             self.selected = int(gap.argmin())
             if gap.min() > 1.0:
                 self._place(at)
-        elif phase == 1:
+        elif drag:
             self._nudge(*(at - self.landmarks[:, self.selected]))
+
+    def _carry(self, to: np.ndarray, lifted: bool, put_down: bool) -> None:
+        """The reader carries the robot in the air, then puts it down: a kidnap."""
+        if lifted and self.carried_from is None:
+            self.carried_from = self.truth
+        if put_down and self.values["show"] != "map":
+            self.truth = self.truth if self.carried_from is None else self.carried_from
+            self._carry_off(to)
+        elif lifted or put_down:
+            self.truth = self._inside(to)
+        if put_down:
+            self.carried_from = None
 
     # ---- what is shown ----------------------------------------------------------------------
     def likelihood_map(self) -> tuple[np.ndarray, np.ndarray]:
@@ -319,7 +380,7 @@ class Drive(Scene):
         }
         if show == "copies":
             masses = self.masses()
-            out["hypotheses"] = float((masses > 0.02).sum())
+            out["hypotheses"] = float(self.alive)
             out["heaviest"] = float(100 * masses.max())
         if self.values["outliers"] or self.values["defence"] != "none":
             out["false readings"] = float(self.counts["false"])

@@ -245,22 +245,29 @@ def _sure_and_wrong(s) -> bool:
     return s.error > 2 and s.spread < 0.5 and s.ticks > 300
 
 
+def _off(switch: bool) -> bool:
+    return not switch
+
+
 PANELS = {
     "localise": Panel(
         "Drive and localise",
         ("M", "prior", *SENSOR, "noise", "scheme", "threshold", "fresh", "kidnap", *HANDS),
         missions=(
             Mission(
+                "found",
                 "Start lost and let the autopilot drive until the ellipse closes on the robot. "
                 "How many landmarks did it need to see?",
                 lambda s: s.values["prior"] == "lost" and _found(s),
             ),
             Mission(
+                "fifty particles",
                 "Take 50 particles and try new seeds until the filter is sure and wrong: a small "
                 "ellipse, metres from the robot. Does it recover?",
                 lambda s: s.values["M"] <= 60 and _sure_and_wrong(s),
             ),
             Mission(
+                "found after a kidnap",
                 "Kidnap the robot when the filter has found it. Then give it 5 % fresh particles "
                 "and kidnap again: time the recovery.",
                 lambda s: s.kidnapped and s.values["fresh"] > 0 and _found(s),
@@ -277,20 +284,23 @@ PANELS = {
                 "autopilot": True, "sight": 12.0, "sigma_r": 0.4},
         missions=(
             Mission(
+                "one landmark",
                 "Choose range only and remove landmarks until one is left. What shape is the "
                 "likelihood? With two, where are its peaks?",
                 lambda s: s.values["sense"] == "range" and s.landmarks.shape[1] == 1,
             ),
             Mission(
+                "a right angle",
                 "With two landmarks and bearings only, drag them until the likely area is as "
                 "small as you can make it. Which angle between them is best?",
                 lambda s: s.values["sense"] == "bearing"
                 and s.landmarks.shape[1] == 2
-                and s.readouts()["likely area"] < 2.5,
+                and s.readouts()["likely area"] < 0.6,
             ),
             Mission(
+                "twice the noise",
                 "Double the range noise. By what factor does the likely area grow with one "
-                "landmark, and with four?",
+                "landmark, and with four? Why not by the same?",
                 lambda s: s.values["sigma_r"] >= 0.8 and s.landmarks.shape[1] >= 4,
             ),
         ),
@@ -302,18 +312,24 @@ PANELS = {
         ("do_predict", "do_weigh", "do_resample", "M", "prior", "threshold", "noise", *HANDS),
         missions=(
             Mission(
-                "Switch resampling off. Watch the ESS: how long until one particle carries "
-                "nearly all the weight?",
-                lambda s: not s.values["do_resample"] and s.ess < 2,
+                "no resampling",
+                "Let the filter settle, then switch resampling off. Watch the largest dot. How "
+                "many steps until the ESS is below 10?",
+                lambda s: not s.values["do_resample"] and s.ess < 10,
             ),
             Mission(
-                "Switch prediction noise off. The ESS looks healthy: what has the cloud lost?",
-                lambda s: not s.values["do_predict"] and s.spread < 0.02,
+                "no prediction noise",
+                "Switch resampling on again and prediction noise off. The ESS looks healthy. What "
+                "does the error do after a few laps, and what do the dots look like?",
+                lambda s: (
+                    s.values["do_resample"] and not s.values["do_predict"] and s.spread < 0.02
+                ),
             ),
             Mission(
-                "Switch weighting off with the pose known. Which part of the filter is left, and "
-                "what is it called?",
-                lambda s: not s.values["do_weigh"] and s.spread > 1.0,
+                "no weighting",
+                "Switch weighting off for one lap, then on. Can the cloud find its way back? Try "
+                "again with 100 particles.",
+                lambda s: s.values["do_weigh"] and s.spent("do_weigh", _off) >= 400,
             ),
         ),
         alt="The robot, its cloud and the filter's mean, with three switches: prediction noise, "
@@ -325,22 +341,32 @@ PANELS = {
         values={"outliers": 20, "prior": "known", "sight": 6.0},
         missions=(
             Mission(
-                "With no defence raise the false readings until the filter loses the robot.",
-                lambda s: s.values["defence"] == "none" and s.error > 1.5 and s.ticks > 60,
+                "lost",
+                "No gate, no mixture: raise the share of false readings. At which share does the "
+                "cloud lose the robot?",
+                lambda s: (
+                    s.values["defence"] == "none" and s.values["outliers"] > 20 and s.error > 1.5
+                ),
             ),
             Mission(
-                "At 30 % false readings choose the mixture. Then set its ε far too low and far "
-                "too high: which is the cheaper mistake?",
-                lambda s: s.values["outliers"] >= 30
-                and s.values["defence"] == "mixture"
-                and _found(s)
-                and s.ticks > 300,
+                "two wrong shares",
+                "Switch the mixture on, and set its share ε far too low and far too high. Which "
+                "error costs more?",
+                lambda s: (
+                    s.values["defence"] == "mixture"
+                    and s.spent("epsilon", lambda share: share <= 2) >= 120
+                    and s.spent("epsilon", lambda share: share >= 60) >= 120
+                ),
             ),
             Mission(
-                "Choose the gate and start lost. Why does it reject even honest readings?",
-                lambda s: s.values["defence"] == "gate"
-                and s.values["prior"] == "lost"
-                and s.counts["rejected"] > 10,
+                "shut gate",
+                "Switch to the gate, kidnap the robot, and wait. Does the filter ever accept a "
+                "measurement again?",
+                lambda s: (
+                    s.values["defence"] == "gate"
+                    and s.kidnapped
+                    and s.counts["rejected"] >= s.rejected_before + 10
+                ),
             ),
         ),
         alt="The robot in the arena; false readings appear as red beams that end in a cross. The "
@@ -354,18 +380,25 @@ PANELS = {
         record=(416, 16),
         missions=(
             Mission(
+                "hypotheses die",
                 "Wait until fewer than four hypotheses are alive. Nothing the robot saw told them "
-                "apart: what did?",
-                lambda s: 0 < (s.masses() > 0.02).sum() < 4 and s.ticks > 150,
+                "apart. What did?",
+                lambda s: s.most_alive == 4 and s.alive < 4,
             ),
             Mission(
-                "Take 10,000 particles and compare systematic with multinomial: which keeps four "
-                "for longer?",
-                lambda s: s.values["M"] >= 5000 and s.ticks > 300,
+                "two schemes",
+                "Take 10,000 particles and compare systematic with multinomial. Which keeps more "
+                "for longer, and is one run each enough to say so?",
+                lambda s: (
+                    s.values["M"] >= 5000
+                    and min(s.spent("scheme", k.__eq__) for k in ("systematic", "multinomial"))
+                    >= 200
+                ),
             ),
             Mission(
-                "Put up the fifth landmark while all four are alive, and again when only one is. "
-                "When does it help?",
+                "fifth landmark",
+                "Put up the fifth landmark while several clouds are alive, and again when only one "
+                "is left. When does it help, and when does it hurt?",
                 lambda s: s.landmarks.shape[1] == 5 and s.masses()[0] > 0.9,
             ),
         ),
@@ -378,16 +411,19 @@ PANELS = {
         values={"prior": "known", "hand": "robot"},
         missions=(
             Mission(
+                "never unsure",
                 "Kidnap the robot without fresh particles. Is the filter ever unsure?",
                 lambda s: s.kidnapped and s.values["fresh"] == 0 and _sure_and_wrong(s),
             ),
             Mission(
+                "small insurance",
                 "Find the smallest share of fresh particles that recovers within five seconds.",
                 lambda s: s.kidnapped and 0 < s.values["fresh"] <= 5 and _found(s),
             ),
             Mission(
+                "price of insurance",
                 "Without a kidnap, what do 20 % fresh particles cost in error and spread?",
-                lambda s: not s.kidnapped and s.values["fresh"] >= 20 and s.ticks > 300,
+                lambda s: not s.kidnapped and s.spent("fresh", lambda share: share >= 20) >= 300,
             ),
         ),
         alt="The robot is carried to another place and the cloud stays behind; fresh particles "

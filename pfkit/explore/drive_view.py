@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from pfkit.explore.camera import say_outside
 from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Scene
 
@@ -14,11 +15,12 @@ def draw_drive(s: Scene, pen: Pen) -> None:
     """The arena and the strip charts; in the sensing panel the likelihood map alone."""
     x0, x1, y0, y1 = s.bounds
     alone = s.values["show"] == "map"
-    pen.view((0.01, 0.02, 0.98 if alone else 0.735, 0.96), (x0, x1), (y0, y1), equal=True)
+    pen.view((0.01, 0.02, 0.98 if alone else 0.735, 0.96), s.view[:2], s.view[2:], equal=True)
     if alone:
         _, p = s.likelihood_map()
         pen.image("exact", np.sqrt(p / p.max()), (x0, x1), (y0, y1))
     else:
+        pen.line("wall", [x0, x1, x1, x0, x0], [y0, y0, y1, y1, y0], width=1)
         trail = np.array(s.trail)
         pen.line("truth", trail[:, 0], trail[:, 1], width=1.5)
         draw_cloud(s, pen)
@@ -29,11 +31,12 @@ def draw_drive(s: Scene, pen: Pen) -> None:
         x, y, theta = s.copies()[:, 1:]
         pen.ellipses("muted", x, y, 0.45, 0.45, width=1.5, dash=3)
         pen.quills("muted", x, y, theta, length=24)
+    if not alone:
+        draw_estimate(s, pen)
     pen.robots("truth", *s.truth, radius=0.18)
-    if alone:
-        return
-    draw_estimate(s, pen)
-    draw_charts(s, pen)
+    if not alone:
+        say_outside(pen, s.view, s.estimate)
+        draw_charts(s, pen)
 
 
 def draw_cloud(s: Scene, pen: Pen) -> None:
@@ -93,6 +96,7 @@ def draw_readings(s: Scene, pen: Pen, x: np.ndarray, y: np.ndarray, width: float
 
 
 def draw_estimate(s: Scene, pen: Pen) -> None:
+    """Mean and two-sigma ellipse: an empty ring, to be drawn before the robot."""
     x, y, theta = s.estimate
     (a, c), (_, b) = s.Sigma[0, :2], s.Sigma[1, :2]
     middle, half = (a + b) / 2, np.hypot((a - b) / 2, c)

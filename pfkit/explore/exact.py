@@ -18,7 +18,7 @@ from pfkit.explore.drive import Drive
 from pfkit.explore.drive_panels import CONTROLS, HANDS
 from pfkit.explore.drive_view import draw_drive
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Mission, Panel, Readouts
+from pfkit.explore.scene import Gauge, Mission, Panel, Readouts
 
 CELLS = (25, 20, 24)
 COARSE = {  # a grid sees nothing finer than its cells, so the noises start above them
@@ -47,26 +47,29 @@ class Exact(Drive):
              "fresh", "kidnap", *HANDS),
             missions=(
                 Mission(
+                    "a hundred times the work",
                     "Start lost with 100 particles, then with 10,000. How many nats does a "
                     "hundred times the work buy after ten looks?",
                     lambda s: s.values["M"] >= 5000 and s.ticks >= 10 and s.nats < 0.3,
                 ),
                 Mission(
-                    "Find a moment with a small error and a large divergence: right, for the wrong "
-                    "reason.",
-                    lambda s: s.error < 0.3 and s.nats > 1,
+                    "right for the wrong reason",
+                    "Take 200 particles or fewer and find a moment with a small error and a large "
+                    "divergence: right, for the wrong reason.",
+                    lambda s: s.values["M"] <= 200 and s.error < 0.3 and s.nats > 1,
                 ),
                 Mission(
+                    "too much noise expected",
                     "Let the filter expect three times the motion noise there is. Does the error "
                     "tell you? Do the nats?",
-                    lambda s: s.values["trust"] >= 3 and s.ticks >= 10,
+                    lambda s: s.spent("trust", lambda times: times >= 3) >= 10,
                 ),
             ),
             alt="The exact posterior of a grid filter as shading, the particles on top of it, the "
             "robot and its landmarks. A readout gives the divergence between the two in nats.",
         )
     }  # fmt: skip
-    units: ClassVar[dict[str, str]] = {**Drive.units, "divergence": "nats"}
+    gauges: ClassVar[dict[str, Gauge]] = {**Drive.gauges, "divergence": Gauge("nats", 2)}
 
     def start(self) -> None:
         super().start()
@@ -90,8 +93,7 @@ class Exact(Drive):
         return {"divergence": self.nats, **super().readouts()}
 
     def draw(self, pen: Pen) -> None:
-        x0, x1, y0, y1 = self.bounds
-        pen.view((0.01, 0.02, 0.735, 0.96), (x0, x1), (y0, y1), equal=True)
+        pen.view((0.01, 0.02, 0.735, 0.96), self.view[:2], self.view[2:], equal=True)
         p = self.grid.p.sum(axis=2).T
-        pen.image("exact", 0.75 * np.sqrt(p / p.max()), (x0, x1), (y0, y1))
+        pen.image("exact", 0.75 * np.sqrt(p / p.max()), self.bounds[:2], self.bounds[2:])
         draw_drive(self, pen)

@@ -40,19 +40,22 @@ class Host:
         key : str
             As given to `open`.
         operations : str
-            JSON list of ["reset", seed], ["set", name, value] or ["step", n].
+            JSON list of ["reset", seed], ["set", name, value], ["step", n], or ["watch"]: what comes
+            before it was no deed of the reader.
 
         Returns
         -------
         drawing : float32 array (n,)
         report : str
-            JSON with ticks, readouts, values of all controls, and missions done.
+            JSON with ticks, readouts, values of all controls, handles, missions done, and what
+            was told since the last report.
         """
         s = self.scenes[key]
         for operation in json.loads(operations):
             _apply(s, operation)
         drawing, readouts = s.frame()
-        return drawing, json.dumps(report(s, readouts))
+        told = report(s, readouts)
+        return drawing, json.dumps({**told, "done": s.achieved, "told": s.news()})
 
 
 def _apply(s: Scene, operation: list[Any]) -> None:
@@ -64,8 +67,10 @@ def _apply(s: Scene, operation: list[Any]) -> None:
         case ["step", int(n)] if 0 <= n <= MAX_REPLAY:
             for _ in range(n):
                 s.step()
+        case ["watch"]:
+            s.watch()
         case _:
-            raise ParameterError(f"operation {operation!r:.80} is not one of reset, set, step")
+            raise ParameterError(f"operation {operation!r:.80} is not one of reset, set, step, watch")
 
 
 def report(s: Scene, readouts: dict[str, float | str]) -> dict[str, Any]:
@@ -78,5 +83,5 @@ def report(s: Scene, readouts: dict[str, float | str]) -> dict[str, Any]:
         "seed": s.seed,
         "readouts": clean,
         "values": s.values,
-        "done": s.achieved,
+        "handles": [[float(x), float(y)] for x, y in s.handles()],
     }

@@ -15,10 +15,12 @@ from typing import Any, ClassVar
 import numpy as np
 
 import pfkit as pf
+from pfkit.explore.camera import ease, say_outside, wanted
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
 
 BOUNDS = (-90.0, 20.0, -5.0, 95.0)
+LAWN = (-90.0, 20.0, -12.0, 95.0)  # a beacon stands just below the bounds
 DRIFT = pf.Drift((0.005, 0, 0), (5e-5, 0.002, 0))
 WINDOW = 200  # ranges that the chart shows
 SURE, FAR = 1.0, 2.5  # metres: what counts as sure of itself, and as wrong
@@ -52,13 +54,13 @@ class Mower(Scene):
     rate = 20.0
     record_steps = 600
     record_every = 10
-    units: ClassVar[dict[str, str]] = {
-        "time": "s",
-        "error": "m",
-        "spread": "m",
-        "dead reckoning": "m",
-        "ranges used": "",
-        "ESS": "",
+    gauges: ClassVar[dict[str, Gauge]] = {
+        "time": Gauge("s", 1),
+        "error": Gauge("m", 2),
+        "spread": Gauge("m", 2),
+        "dead reckoning": Gauge("m", 1),
+        "ranges used": Gauge(),
+        "ESS": Gauge(),
     }
     all_controls = (
         Control("bias", "Know the beacons' biases", "toggle", True, help="1.9 to 3.8 m, learnt."),
@@ -121,17 +123,20 @@ class Mower(Scene):
             ("bias", "keep", "sigma_r", "start", "M", "begin"),
             missions=(
                 Mission(
+                    "sure and wrong",
                     "Let it run for ten seconds, then forget the biases and trust the ranges more: "
                     f"1.5 m. Find a moment when the spread is below {SURE:g} m and the error "
                     f"above {FAR:g} m.",
                     lambda s: s.values["bias"] is False and s.spread < SURE and s.error > FAR,
                 ),
                 Mission(
+                    "one range in twenty",
                     "Know the biases and throw ranges away. Can it live on one range in twenty "
                     "for a minute, with an error below 5 m at the end?",
                     lambda s: s.thin_for > 260 and s.error < 5,
                 ),
                 Mission(
+                    "found from anywhere",
                     "Start anywhere. How many ranges until error and spread are below 3 m? "
                     "Scrub the log to another place and count again.",
                     lambda s: s.values["start"] == "anywhere" and max(s.error, s.spread) < 3,
@@ -154,6 +159,7 @@ class Mower(Scene):
         else:
             self.bel = pf.uniform_prior(M, self.log.world, self.rng)
         self.ess = float(M)
+        self.view, self.standing = LAWN, ""
         self.chart: list[tuple[float, float]] = []
         self.heard: tuple[int, float] | None = None
         self._judge_cloud()
@@ -187,6 +193,20 @@ class Mower(Scene):
         self.error = float(np.hypot(*(self.mean - self.truth)[:2]))
         self.spread = float(np.sqrt(Sigma[0, 0] + Sigma[1, 1]))
         self.chart.append((self.error, self.spread))
+        self.view = ease(self.view, wanted(LAWN, *self.bel.state[:2]), self.rate)
+        self._tell_standing()
+
+    def _tell_standing(self) -> None:
+        """One sentence when the filter has found the mower, and one when it is sure and wrong."""
+        if max(self.error, self.spread) < FAR:
+            standing = f"Found: {self.error:.1f} m off after {self.used} ranges."
+        elif self.spread < SURE and self.error > FAR:
+            standing = f"Sure and wrong: {self.error:.1f} m off, spread {self.spread:.1f} m."
+        else:
+            return
+        if standing[0] != self.standing[:1]:
+            self.tell(standing)
+        self.standing = standing
 
     def readouts(self) -> Readouts:
         blind = recorded()["blind"][:2, max(self.k - 1, 0)]
@@ -201,8 +221,7 @@ class Mower(Scene):
 
     # ---- drawing ----------------------------------------------------------------------------
     def draw(self, pen: Pen) -> None:
-        x0, x1, y0, y1 = BOUNDS  # of the lawn; a beacon stands just below it
-        pen.view((0.01, 0.02, 0.60, 0.96), (x0, x1), (y0 - 7, y1), equal=True)
+        pen.view((0.01, 0.02, 0.60, 0.96), self.view[:2], self.view[2:], equal=True)
         behind = slice(max(self.first, self.k - 160), max(self.k, 1), 4)
         pen.line("dead reckoning", *recorded()["blind"][:2, behind], width=1.2, dash=2)
         pen.line("truth", *self.log.truth[:2, behind], width=1.5)
@@ -213,8 +232,9 @@ class Mower(Scene):
             s, r = self.heard
             pen.ellipses("measurement", mx[s], my[s], max(r, 0.1), max(r, 0.1), width=1.2)
         pen.symbols("landmarks", "diamond", mx, my, size=15)
-        pen.robots("truth", *self.truth, radius=2.0)
         pen.robots("estimate", *self.mean, radius=1.6)
+        pen.robots("truth", *self.truth, radius=2.0)
+        say_outside(pen, self.view, self.mean)
         self._draw_chart(pen)
 
     def _draw_chart(self, pen: Pen) -> None:

@@ -12,6 +12,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 import pfkit as pf
+from pfkit.explore.camera import say_outside
 from pfkit.explore.drive import ALPHA, Drive
 from pfkit.explore.drive_panels import CONTROLS, HANDS
 from pfkit.explore.drive_view import draw_charts, draw_cloud, draw_estimate, draw_readings
@@ -89,16 +90,19 @@ class Office(Drive):
              "kidnap", *HANDS),
             missions=(
                 Mission(
+                    "found",
                     "Count the clusters after the first few looks. Which rooms does the robot "
                     "confuse, and what settles it?",
                     lambda s: s.values["prior"] == "lost" and s.error < 0.4 and s.spread < 0.6,
                 ),
                 Mission(
+                    "two beams",
                     "How few particles still find the robot in most of five runs? Then use two "
                     "beams instead of five. Is one beam enough?",
                     lambda s: s.values["K"] <= 2 and s.error < 0.4 and s.spread < 0.6,
                 ),
                 Mission(
+                    "carried off and found",
                     "Carry the robot into another room. Which share of fresh particles brings the "
                     "filter back, and how long does it take?",
                     lambda s: s.kidnapped and s.error < 0.4 and s.spread < 0.8,
@@ -155,8 +159,7 @@ class Office(Drive):
             self._build()
 
     def draw(self, pen: Pen) -> None:
-        x0, x1, y0, y1 = self.bounds
-        pen.view((0.01, 0.02, 0.745, 0.96), (x0, x1), (y0, y1), equal=True, frame=False)
+        pen.view((0.01, 0.02, 0.745, 0.96), self.view[:2], self.view[2:], equal=True, frame=False)
         for boxes, style in (
             (OFFICE_WALLS, "wall"),
             (OFFICE_DOORS, "paper"),
@@ -171,6 +174,7 @@ class Office(Drive):
             x, y, theta = self.truth
             ends = self.z[0] * np.exp(1j * (theta + self.z[1])) + x + 1j * y
             draw_readings(self, pen, ends.real, ends.imag, width=1.5)
-        pen.robots("truth", *self.truth, radius=BODY)
         draw_estimate(self, pen)
+        pen.robots("truth", *self.truth, radius=BODY)
+        say_outside(pen, self.view, self.estimate)
         draw_charts(self, pen, landmarks=False)

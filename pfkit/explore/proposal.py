@@ -15,9 +15,10 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
 
 X = np.linspace(-8, 8, 801)
+NEAR_BEST = 0.48  # of M: the predicted ESS of the best bell for two bumps is 0.486 M
 TARGETS = {  # weights, means, standard deviations of normal components
     "one": ((1.0,), (0.0,), (1.0,)),
     "two": ((0.6, 0.4), (-2.0, 2.5), (0.6, 0.8)),
@@ -42,9 +43,14 @@ class Proposal(Scene):
     record_steps = 60
     record_every = 1
     still_at = 40
-    units: ClassVar[dict[str, str]] = {
-        "largest weight": "%",
-        "scatter": "sd of 100 estimates",
+    gauges: ClassVar[dict[str, Gauge]] = {
+        "ESS": Gauge("", 1),
+        "ESS predicted": Gauge("", 1),
+        "of M": Gauge(),
+        "largest weight": Gauge("%", 1),
+        "estimate": Gauge("", 2),
+        "true mean": Gauge("", 2),
+        "scatter": Gauge("sd of 100 estimates", 3),
     }
     all_controls = (
         Control(
@@ -84,26 +90,36 @@ class Proposal(Scene):
             ("target", "tails", "mu", "sigma", "M", "point"),
             missions=(
                 Mission(
-                    "Move the proposal onto one bump of the two and make it narrow. The ESS looks "
-                    "fine and the estimate is wrong: what has the ESS not seen?",
+                    "the best bell",
+                    "Find the centre and width of the normal proposal with the largest predicted "
+                    "ESS. Does the best bell just cover both bumps, or does it reach well beyond "
+                    "them?",
                     lambda s: (
                         s.values["target"] == "two"
+                        and s.values["tails"] == "normal"
+                        and s.predicted() > NEAR_BEST * s.values["M"]
+                    ),
+                ),
+                Mission(
+                    "blind to a bump",
+                    "Put a narrow proposal on the right bump. The ESS may look healthy. What does "
+                    "the estimate say, and why does nothing warn you?",
+                    lambda s: (
+                        s.values["target"] == "two"
+                        and s.values["mu"] > 1.5
                         and s.ess > 0.6 * s.values["M"]
                         and abs(s.estimates[-1] - s.mean) > 1
                     ),
                 ),
                 Mission(
-                    "Find the proposal with the largest ESS for one bump. Is the best width "
-                    "smaller or larger than the target's?",
-                    lambda s: s.values["target"] == "one" and s.ess > 0.98 * s.values["M"],
-                ),
-                Mission(
-                    "Take a normal proposal narrower than the one bump. The predicted ESS falls to "
-                    "zero below 0.7: why? Then give it heavy tails.",
+                    "half as wide",
+                    "Take one bump and make the proposal half as wide, or less. Draw again and "
+                    "again: how often does one stem tower over all others?",
                     lambda s: (
                         s.values["target"] == "one"
-                        and s.values["sigma"] <= 0.7
-                        and s.values["tails"] == "student"
+                        and s.values["tails"] == "normal"
+                        and s.values["sigma"] <= 0.5
+                        and len(s.estimates) >= 20
                     ),
                 ),
             ),
@@ -125,6 +141,11 @@ class Proposal(Scene):
         if name in ("target", "mu", "sigma", "tails", "point"):
             self.estimates = []
         self._sample()
+        self.tell(f"Effective size {self.ess:.0f} of {self.values['M']:.0f}.")
+
+    def handles(self) -> list[tuple[float, float]]:
+        v = self.values
+        return [(float(v["mu"]), float(self.q(np.array(v["mu"]))))]
 
     def p(self, x: np.ndarray) -> np.ndarray:
         """The target's density."""
@@ -184,6 +205,7 @@ class Proposal(Scene):
         pen.area("exact", X, p, alpha=0.22)
         pen.line("exact", X, p, width=2)
         pen.line("dead reckoning", X, q, width=2.5, dash=6)
+        pen.symbols("dead reckoning", "circle", *np.transpose(self.handles()), size=12)
         pen.text("ink", X[p.argmax()] + 0.7, 0.95 * p.max(), "target", size=12)
         pen.text("ink", X[q.argmax()] + 0.3, 0.6 * q.max(), "proposal", size=12)
         pen.view((0.02, 0.08, 0.74, 0.30), (-8, 8), (0, max(3.2 / w.size, 1.1 * w.max())))

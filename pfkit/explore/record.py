@@ -74,7 +74,8 @@ def record(scene: Scene, steps: int | None = None, every: int | None = None) -> 
             floats.append(f)
             ints.append(d)
             told = report(scene, {k: _short(v) for k, v in readouts.items()})
-            frames.append([h.size, f.size, d.size, scene.ticks, told["readouts"], told["done"]])
+            handles = [[round(x, 2), round(y, 2)] for x, y in told["handles"]]
+            frames.append([h.size, f.size, d.size, scene.ticks, told["readouts"], handles])
         if tick < steps:
             scene.step()
     return {

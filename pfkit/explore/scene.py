@@ -21,6 +21,7 @@ So a run is a value: scene, panel, seed and the list of control changes name it 
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal
@@ -45,7 +46,7 @@ class Control:
     kind
         "range" (number in [lo, hi]), "choice" (one of `choices`), "toggle" (bool), "button"
         (an event, no value), "point" (x, y, phase in data units of the first view; phase 0 press,
-        1 drag, 2 release).
+        1 drag, 2 release, 3 a tap: pressed and released in one place, 4 called off).
     keys
         Keyboard: maps a key name of the browser ("ArrowUp", "k") to the value that it sets. A range
         falls back to its default on release, so that keys act like a joystick.
@@ -112,10 +113,19 @@ class Control:
 
 @dataclass(frozen=True)
 class Mission:
-    """Something to try, and how the scene knows that the reader did it (None: it cannot)."""
+    """Something to try, under a short name, and how the scene knows that the reader did it."""
 
+    deed: str
     text: str
-    done: Callable[[Scene], bool] | None = None
+    done: Callable[[Any], bool]
+
+
+@dataclass(frozen=True)
+class Gauge:
+    """How a readout is shown: its unit, and decimals that stay whatever the value."""
+
+    unit: str = ""
+    decimals: int = 0
 
 
 @dataclass(frozen=True)
@@ -134,7 +144,12 @@ class Scene:
     """Base of all scenes: keeps the values, the seed and the generator; subclasses keep the world.
 
     Subclasses define the class attributes below and `start`, `advance`, `draw`, `readouts`, and
-    may define `changed(name, value)` for what must happen at once when a control moves.
+    may define `changed(name, value)` for what must happen at once when a control moves, and
+    `handles` for what a finger can take hold of.
+
+    Missions are judged from `watch` on, which a front end calls when the reader takes over. A deed
+    counts when it is done, not because it is so already, or because a new seed makes it so. What
+    was achieved stays so when the run starts again.
     """
 
     name: ClassVar[str]
@@ -142,7 +157,7 @@ class Scene:
     rate: ClassVar[float] = 30.0  # ticks per second that feel right
     all_controls: ClassVar[tuple[Control, ...]]
     panels: ClassVar[dict[str, Panel]]
-    units: ClassVar[dict[str, str]] = {}  # readout name -> unit, in display order
+    gauges: ClassVar[dict[str, Gauge]] = {}  # of each readout that is a number
     record_steps: int = 240  # length of the recorded run, in ticks
     record_every: int = 3  # ticks between two of its frames
     still_at: ClassVar[int] = 0  # tick that the still shows; 0: the end of the recorded run
@@ -161,7 +176,17 @@ class Scene:
             c.name: c.default for c in self.all_controls if c.kind not in ("button", "point")
         }
         self.values.update(self.panel.values)
+        self.tried: Counter[tuple[str, Any]] = Counter()  # ticks that each value has stood
+        self.sentences: list[str] = []
         self.reset(seed)
+        self.watch()
+
+    def watch(self) -> None:
+        """From here on the reader acts: nothing is achieved yet, nothing was said."""
+        self.achieved = [False] * len(self.panel.missions)
+        self.tried.clear()
+        self.sentences.clear()
+        self._already = self._deeds()
 
     def reset(self, seed: int) -> None:
         """Start again from this seed with the controls where they are."""
@@ -169,8 +194,8 @@ class Scene:
             raise ParameterError(f"seed = {seed!r}: give a whole number from 0 to 2147483647")
         self.seed, self.ticks = seed, 0
         self.rng = np.random.default_rng(seed)
-        self.achieved = [False] * len(self.panel.missions)
         self.start()
+        self._already = self._deeds()
 
     def set(self, name: str, value: Any) -> None:
         """Move the control `name` to `value` (clipped into its range)."""
@@ -182,15 +207,32 @@ class Scene:
             self.values[name] = value
         if control.live:
             self.changed(name, value)
-            self._judge()
         else:
+            already = self._already
             self.reset(self.seed)
+            self._already = already
+        self._judge()
 
     def step(self) -> None:
         """Let one tick pass."""
         self.advance()
         self.ticks += 1
+        self.tried.update(self.values.items())
         self._judge()
+
+    def spent(self, name: str, accept: Callable[[Any], bool]) -> int:
+        """Ticks that the reader has seen with an accepted value of the control `name`."""
+        return sum(n for (key, value), n in self.tried.items() if key == name and accept(value))
+
+    def tell(self, sentence: str) -> None:
+        """Say in one sentence what just happened, for readers who do not see the picture."""
+        self.sentences.append(sentence)
+
+    def news(self) -> list[str]:
+        """What was told since the last call."""
+        told = [*self.sentences]
+        self.sentences.clear()
+        return told
 
     def frame(self) -> tuple[np.ndarray, Readouts]:
         """The drawing, shape (n,) float32 (see `pen`), and the readouts."""
@@ -208,18 +250,23 @@ class Scene:
             "size": list(self.size),
             "rate": self.rate,
             "seed": self.seed,
-            "units": dict(self.units),
+            "units": {name: gauge.unit for name, gauge in self.gauges.items()},
+            "decimals": {name: gauge.decimals for name, gauge in self.gauges.items()},
             "controls": [
                 {**self.by_name[n].describe(), "default": self.values.get(n)}
                 for n in self.panel.controls
             ],
-            "missions": [m.text for m in self.panel.missions],
+            "missions": [{"deed": m.deed, "text": m.text} for m in self.panel.missions],
         }
 
+    def _deeds(self) -> list[bool]:
+        return [bool(m.done(self)) for m in self.panel.missions]
+
     def _judge(self) -> None:
-        for i, mission in enumerate(self.panel.missions):
-            if mission.done is not None and not self.achieved[i]:
-                self.achieved[i] = bool(mission.done(self))
+        now = self._deeds()
+        for k, (done, already) in enumerate(zip(now, self._already, strict=True)):
+            self.achieved[k] = self.achieved[k] or (done and not already)
+        self._already = now
 
     # ---- what a subclass writes -------------------------------------------------------------
     def start(self) -> None:
@@ -230,6 +277,10 @@ class Scene:
 
     def changed(self, name: str, value: Any) -> None:
         """A live control moved. Scenes that read `self.values` each tick need nothing here."""
+
+    def handles(self) -> list[tuple[float, float]]:
+        """What can be taken hold of and dragged: places in data units of the first view."""
+        return []
 
     def draw(self, pen: Pen) -> None:
         raise NotImplementedError

@@ -125,7 +125,7 @@ class Still:
     def robots(self, d: np.ndarray, colour: str) -> None:
         r, hollow = max(float(d[0]) * self.sx, 5), bool(d[1])
         shape = (
-            f'<circle r="{r:.1f}" fill="{LIGHT["paper"]}"/><path d="M0 0H{1.7 * r:.1f}"/>'
+            f'<circle r="{r:.1f}" fill="none"/><path d="M{r:.1f} 0H{1.7 * r:.1f}"/>'
             if hollow
             else f'<path fill="{colour}" d="M{1.5 * r:.1f} 0L{-r:.1f} {0.85 * r:.1f}'
             f'V{-0.85 * r:.1f}Z"/>'

@@ -52,6 +52,27 @@ def test_drawing_is_float32_and_made_of_known_records(name, panel):
 
 
 @pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_every_number_says_how_it_is_written(name, panel):
+    s = run(name, panel)
+    for control in ("outliers", "defence"):  # they add readouts
+        if control in s.by_name:
+            s.set(control, 30 if control == "outliers" else "gate")
+    numbers = {k for k, v in s.readouts().items() if isinstance(v, float)}
+    about = s.describe()
+    assert numbers <= set(about["units"]) == set(about["decimals"])
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
+def test_what_can_be_held_is_in_the_picture(name, panel):
+    s = run(name, panel)
+    drawing, _ = s.frame()
+    x0, x1, y0, y1 = next(d for op, _, d in records(drawing) if op == "view")[4:8]
+    assert bool(s.handles()) == ("point" in s.by_name)
+    for x, y in s.handles():
+        assert x0 <= x <= x1 and y0 <= y <= y1
+
+
+@pytest.mark.parametrize(("name", "panel"), PANELS)
 def test_every_control_of_a_panel_can_be_moved_to_its_ends(name, panel):
     s = scene(name, panel, 2)
     for control in (s.by_name[n] for n in s.panel.controls):

@@ -22,20 +22,21 @@
   }
   PF.el = el;
 
-  function tidy(value) {
+  const PAUSE = 2500; // ms between two sentences of a run
+  const SILENCE = 20000; // ms of a run after which the readouts are said, if nothing happened
+
+  /* A number with the decimals it always has, whatever its size. */
+  function written(value, decimals) {
     if (typeof value !== "number") return value;
-    const a = Math.abs(value);
-    let text = String(value);
-    if (!Number.isInteger(value)) {
-      text = a >= 100 ? value.toFixed(0) : a >= 10 ? value.toFixed(1)
-        : a >= 0.01 || a === 0 ? value.toFixed(a < 1 ? 3 : 2) : value.toExponential(1);
-    } else if (a >= 10000) text = value.toLocaleString("en-GB").replace(/,/g, "\u2009");
-    return text.replace("-", "\u2212");
+    const text = value.toFixed(decimals);
+    if (Number(text) === 0) return text.replace("-", "");
+    return (Math.abs(value) >= 10000 ? text.replace(/\B(?=(\d{3})+$)/g, "\u2009") : text)
+      .replace("-", "\u2212");
   }
 
   PF.Explorable = class {
     /* options: about (description), seed, recording (or null), engine() -> promise of an engine,
-       missions (element or null), key, link (bool: offer links to the exact run) */
+       key, link (bool: offer links to the exact run) */
     constructor(root, options) {
       this.root = root;
       this.o = options;
@@ -54,7 +55,8 @@
       this.fps = 0;
       this.frames = [];
       this.at = 0;
-      this.done = [];
+      this.news = [];
+      this.saidAt = 0;
       this.build();
       if (options.recording) this.loadRecording(options.recording);
       this.observe();
@@ -75,21 +77,22 @@
       });
       this.renderer = new PF.Renderer(this.canvas, a.size);
       this.problem = el("div", { class: "pf-problem", role: "alert", hidden: true });
-      this.bar = el("div", { class: "pf-progress", hidden: true }, el("div"));
       this.playButton = el("button", { type: "button", class: "pf-play",
         onclick: () => this.setPlaying(!this.playing) });
       this.seedInput = el("input", { type: "number", min: 0, max: 2147483647, step: 1,
-        value: this.seed, onchange: () => this.restart(this.readSeed()) });
+        value: this.seed, onchange: () => this.restart(this.readSeed(), this.seedInput) });
       this.timing = el("span", { class: "pf-timing", hidden: true });
       const button = (label, title, action) =>
         el("button", { type: "button", title, onclick: action }, label);
-      this.liveButton = button("Go live", "Start Python in this page now", () => this.touch());
+      this.liveButton = button("Go live", "Start Python in this page now",
+        () => this.touch(undefined, this.liveButton));
       this.transport = el("div", { class: "pf-transport" }, this.playButton,
-        button("Step", "One tick", () => this.stepOnce()),
-        button("Restart", "From the same seed", () => this.restart(this.readSeed())),
+        button("Step", "One tick", (e) => this.stepOnce(e.currentTarget)),
+        button("Restart", "From the same seed",
+          (e) => this.restart(this.readSeed(), e.currentTarget)),
         el("label", { class: "pf-seed" }, "Seed ", this.seedInput),
         button("New seed", "Another run of the same experiment",
-          () => this.restart((this.seed * 48271 + 11) % 9973)),
+          (e) => this.restart((this.seed * 48271 + 11) % 9973, e.currentTarget)),
         this.liveButton,
         el("span", { class: "pf-spring" }),
         this.o.link ? button("Link to this run", "Put this exact run into the address",
@@ -102,35 +105,20 @@
       this.inputs = {};
       for (const c of a.controls) if (c.kind !== "point") this.controls.append(this.control(c));
       this.point = a.controls.find((c) => c.kind === "point");
-      if (this.point) this.listenToPointer();
+      if (this.point) {
+        this.hand = new PF.Hand(this.canvas, this.renderer, () => this.report?.handles || [],
+          (x, y, phase, at) => this.change(this.point.name, [x, y, phase], this.canvas, at));
+      }
       const keys = el("p", { class: "pf-keys", id: id + "-keys" }, this.keyHelp());
       const head = el("div", { class: "pf-head" }, el("p", { class: "pf-title" }, a.title),
         this.status);
-      this.missions = this.buildMissions();
-      r.replaceChildren(head, el("div", { class: "pf-stage" }, this.canvas, this.problem, this.bar),
-        this.transport, this.timing, this.readouts, this.missions, this.controls, keys);
+      this.missions = new PF.Missions(a.missions, `${a.name}/${a.panel}`, (text) => this.hear(text));
       this.say(this.mode === "recorded"
         ? "Recorded run. Touch any control and Python continues from here." : "Ready to start.");
+      r.replaceChildren(head, el("div", { class: "pf-stage" }, this.canvas, this.problem),
+        this.transport, this.timing, this.readouts, this.missions.root, this.controls, keys);
       this.setPlaying(this.playing);
       this.theme();
-    }
-
-    buildMissions() {
-      const own = this.o.missions;
-      const items = own ? [...own.querySelectorAll(":scope > ol > li, :scope > ul > li")] : [];
-      const list = el("ol", {});
-      this.marks = [];
-      const texts = items.length ? items : this.about.missions;
-      texts.forEach((text, k) => {
-        const mark = el("span", { class: "pf-mark", "aria-hidden": "true" }, String(k + 1));
-        const word = el("span", { class: "pf-sr" });
-        const body = el("div", {});
-        if (typeof text === "string") body.textContent = text;
-        else body.append(...text.childNodes);
-        this.marks.push({ mark, word });
-        list.append(el("li", {}, mark, word, body));
-      });
-      return el("div", { class: "pf-missions" }, el("p", { class: "pf-sub" }, "Try this"), list);
     }
 
     keyHelp() {
@@ -150,15 +138,15 @@
       const help = c.help ? el("span", { class: "pf-help", id: id + "-help" }, c.help) : null;
       const described = c.help ? id + "-help" : null;
       const value = this.values[c.name] ?? c.default;
-      let node, read, write;
+      let node, write;
       if (c.kind === "button") {
         node = el("div", { class: "pf-control pf-is-button" },
           el("button", { type: "button", "aria-describedby": described,
-            onclick: () => this.change(c.name, true) }, c.label), help);
+            onclick: (e) => this.change(c.name, true, e.currentTarget) }, c.label), help);
         write = () => {};
       } else if (c.kind === "toggle") {
         const box = el("input", { type: "checkbox", id, role: "switch", checked: value,
-          "aria-describedby": described, onchange: () => this.change(c.name, box.checked) });
+          "aria-describedby": described, onchange: () => this.change(c.name, box.checked, box) });
         node = el("div", { class: "pf-control pf-is-toggle" },
           el("label", { for: id }, box, el("span", {}, c.label)), help);
         write = (v) => { box.checked = v; };
@@ -166,7 +154,7 @@
         const group = el("div", { class: c.choices.length > 4 ? "" : "pf-segments" });
         if (c.choices.length > 4) {
           const select = el("select", { id, "aria-describedby": described,
-            onchange: () => this.change(c.name, select.value) },
+            onchange: () => this.change(c.name, select.value, select) },
           ...c.choices.map(([k, label]) => el("option", { value: k, selected: k === value }, label)));
           group.append(select);
           node = el("div", { class: "pf-control" }, el("label", { for: id }, c.label), group, help);
@@ -174,7 +162,7 @@
         } else {
           const radios = c.choices.map(([k, label]) => {
             const radio = el("input", { type: "radio", name: id, value: k, checked: k === value,
-              onchange: () => this.change(c.name, k) });
+              onchange: () => this.change(c.name, k, radio) });
             group.append(el("label", {}, radio, el("span", {}, label)));
             return radio;
           });
@@ -196,10 +184,10 @@
           step: log ? 1 : c.step, "aria-describedby": described, oninput: () => {
             const v = from(slider.value);
             label(v);
-            this.change(c.name, v);
+            this.change(c.name, v, slider);
           } });
         const label = (v) => {
-          shown.textContent = (log ? tidy(v) : v.toFixed(decimals).replace("-", "\u2212")) + (c.unit ? "\u202f" + c.unit : "");
+          shown.textContent = written(v, decimals) + (c.unit ? "\u202f" + c.unit : "");
           slider.setAttribute("aria-valuetext", shown.textContent);
         };
         slider.value = to(value);
@@ -212,7 +200,19 @@
       return node;
     }
 
-    say(text) { if (this.status.textContent !== text) this.status.textContent = text; }
+    say(text) {
+      this.saidAt = performance.now();
+      if (this.status.textContent !== text) this.status.textContent = text;
+    }
+
+    /* What happened in the run is said one sentence at a time, and a run is never silent for long. */
+    hear(sentence) { this.news = [...this.news.slice(-3), sentence]; }
+
+    sayNews(running) {
+      const quiet = performance.now() - this.saidAt;
+      if (this.news.length && quiet > PAUSE) this.say(this.news.shift());
+      else if (running && quiet > SILENCE) this.say(this.sentence(3));
+    }
 
     theme() {
       const dark = PF.isDark(this.root.parentElement || document.body);
@@ -285,24 +285,15 @@
             unit ? el("span", { class: "pf-unit" }, unit) : null)));
           this.cells[name] = number;
         }
-        const text = tidy(value);
+        const text = written(value, this.about.decimals[name]);
         if (this.cells[name].textContent !== text) this.cells[name].textContent = text;
       }
-      if (this.mode !== "live" || this.o.ticks === false) return;
-      (report.done || []).forEach((done, k) => {
-        const m = this.marks[k];
-        if (!m || done === m.done) return;
-        m.done = done;
-        m.mark.parentElement.classList.toggle("pf-done", done);
-        m.mark.textContent = done ? "\u2713" : String(k + 1);
-        m.word.textContent = done ? "Done: " : "";
-        if (done) this.say(`Mission ${k + 1} done.`);
-      });
     }
 
     /* For hosts that throw pictures away, as a notebook does when a cell runs again. */
     destroy() {
       this.gone = true;
+      this.missions.destroy();
       removeEventListener("resize", this.fit);
     }
 
@@ -320,7 +311,8 @@
           this.at = (this.at + 1) % this.frames.length;
           this.showRecorded();
         }
-      } else if (this.mode === "live" && !this.busy) {
+      } else if (this.mode === "live") this.sayNews(run);
+      if (this.mode === "live" && !this.busy) {
         if (run) this.due += dt * this.about.rate;
         const n = run ? Math.min(4, Math.floor(this.due + 0.05)) : 0;
         if (n > 0 || this.pending.length) {
@@ -348,6 +340,8 @@
 
     accept({ drawing, report, ms }) {
       this.show(drawing, report);
+      for (const sentence of report.told || []) this.hear(sentence);
+      this.missions.judge(report.done);
       const now = performance.now();
       if (this.drawnAt) this.fps += 0.1 * (1000 / Math.max(now - this.drawnAt, 1) - this.fps);
       this.drawnAt = now;
@@ -377,7 +371,7 @@
 
     /* ---- what the reader does ------------------------------------------------------------- */
     setPlaying(on) {
-      if (on && this.mode === "idle") return void this.touch();
+      if (on && this.mode === "idle") return void this.touch(undefined, this.playButton);
       this.playing = on;
       this.playButton.textContent = on ? "Pause" : "Play";
       this.playButton.setAttribute("aria-pressed", String(on));
@@ -387,9 +381,10 @@
       } else if (this.mode === "live") this.say("Live: Python runs in this page.");
     }
 
-    sentence() {
-      return Object.entries(this.report.readouts)
-        .map(([k, v]) => `${k} ${tidy(v)}${this.about.units[k] ? " " + this.about.units[k] : ""}`)
+    sentence(most) {
+      const { units, decimals } = this.about;
+      return Object.entries(this.report.readouts).slice(0, most)
+        .map(([k, v]) => `${k} ${written(v, decimals[k])}${units[k] ? " " + units[k] : ""}`)
         .join(", ") + ".";
     }
 
@@ -398,16 +393,16 @@
       return Number.isFinite(seed) && seed >= 0 && seed < 2147483648 ? seed : this.seed;
     }
 
-    async stepOnce() {
+    async stepOnce(control) {
       this.setPlaying(false);
-      await this.touch();
+      await this.touch(undefined, control);
       if (this.mode !== "live") return;
       while (this.busy) await new Promise((r) => setTimeout(r, 4));
       await this.request(1);
       this.say(this.sentence());
     }
 
-    async restart(seed) {
+    async restart(seed, control) {
       this.seed = seed;
       this.seedInput.value = seed;
       this.problem.hidden = true;
@@ -419,22 +414,18 @@
       this.history = [];
       this.initial = { ...this.values };
       this.ticks = 0;
-      await this.touch(0);
+      await this.touch(0, control);
     }
 
-    change(name, value) {
+    change(name, value, control, at) {
       const spec = this.about.controls.find((c) => c.name === name);
       if (spec.kind !== "button" && spec.kind !== "point") this.values[name] = value;
-      if (this.mode !== "live") {
-        (this.waiting = this.waiting || []).push(["set", name, value]);
-        this.touch();
-        return;
-      }
       const last = this.pending[this.pending.length - 1];
       if (last && last[0] === "set" && last[1] === name && spec.kind === "range") last[2] = value;
       else if (last && last[1] === name && spec.kind === "point" && last[2][2] === 1 && value[2] === 1) {
         last[2] = value;
       } else this.pending.push(["set", name, value]);
+      if (this.mode !== "live") this.touch(undefined, control, at);
     }
 
     /* Remember what was done at which tick, so that a link can repeat it. What restarts a run also
@@ -453,104 +444,86 @@
       for (const c of this.about.controls) {
         if (!c.keys || !(e.key in c.keys)) continue;
         e.preventDefault();
+        e.stopPropagation();
         if (e.repeat) return;
         if (c.kind === "range") {
           this.held = { ...(this.held || {}), [c.name]: c };
         }
         if (!this.playing && c.kind === "range") this.setPlaying(true);
-        this.change(c.name, c.keys[e.key]);
+        this.change(c.name, c.keys[e.key], this.canvas);
         return;
       }
-      if (e.key === " ") { e.preventDefault(); this.setPlaying(!this.playing); }
-      else if (e.key === ".") this.stepOnce();
-      else if (e.key === "r") this.restart(this.readSeed());
+      const act = { " ": () => this.setPlaying(!this.playing), ".": () => this.stepOnce(this.canvas),
+        r: () => this.restart(this.readSeed(), this.canvas) }[e.key];
+      if (!act) return;
+      e.preventDefault();
+      e.stopPropagation();
+      if (!e.repeat) act();
     }
 
     keyup(e) {
       for (const c of Object.values(this.held || {})) {
         if (e.key in c.keys) {
           delete this.held[c.name];
-          this.change(c.name, 0);
+          this.change(c.name, 0, this.canvas);
         }
       }
       if (this.held && !Object.keys(this.held).length) this.held = null;
     }
 
     release() {
-      for (const c of Object.values(this.held || {})) this.change(c.name, 0);
+      for (const c of Object.values(this.held || {})) this.change(c.name, 0, this.canvas);
       this.held = null;
     }
 
-    listenToPointer() {
-      const c = this.canvas;
-      c.classList.add("pf-touchable");
-      let down = false;
-      const send = (e, phase) => {
-        const at = this.renderer.locate(e.clientX, e.clientY);
-        if (at) this.change(this.point.name, [+at[0].toFixed(4), +at[1].toFixed(4), phase]);
-      };
-      c.addEventListener("pointerdown", (e) => {
-        down = true;
-        c.setPointerCapture(e.pointerId);
-        send(e, 0);
-      });
-      c.addEventListener("pointermove", (e) => { if (down) send(e, 1); });
-      const up = (e) => { if (down) { down = false; send(e, 2); } };
-      c.addEventListener("pointerup", up);
-      c.addEventListener("pointercancel", up);
-    }
-
     /* ---- live ----------------------------------------------------------------------------- */
-    async touch(fromTick) {
+    /* control: what the reader pressed, which then shows the progress; at: where in the picture */
+    async touch(fromTick, control, at = null) {
       if (this.mode === "live") return;
-      if (this.starting) return this.starting;
-      this.starting = this.goLive(fromTick).finally(() => { this.starting = null; });
+      control = control || (this.liveButton.hidden ? this.playButton : this.liveButton);
+      this.starting = this.starting
+        || this.goLive(fromTick, control, at).finally(() => { this.starting = null; });
       return this.starting;
     }
 
-    async goLive(fromTick) {
+    async goLive(fromTick, control, at) {
       this.liveButton.disabled = true;
-      this.say("Starting Python\u2026");
-      this.bar.hidden = false;
-      const progress = (text, fraction) => {
-        this.say(text);
-        this.bar.firstChild.style.width = `${Math.round(100 * fraction)}%`;
-      };
+      if (this.loading) this.loading.box.remove();
+      this.loading = new PF.Loading(control, (text) => this.say(text), at);
       try {
-        this.engine = await this.o.engine(progress);
+        this.engine = await this.o.engine((text, fraction) => this.loading.progress(text, fraction));
         await this.engine.open(this.key, this.about.name, this.about.panel, this.seed);
-        const set = (this.waiting || []).map((w) => w[1]);
-        const first = this.o.start || [];
-        this.o.start = null;
-        const values = Object.entries(this.initial)
-          .filter(([k]) => this.inputs[k] && !set.includes(k)).map(([k, v]) => ["set", k, v]);
-        const ticks = fromTick ?? this.ticks;
-        const operations = [...values, ["reset", this.seed],
-          ...(first.length ? first : ticks ? [["step", ticks]] : []), ...(this.waiting || [])];
-        const answer = await this.engine.run(this.key, operations);
+        const answer = await this.engine.run(this.key, this.firstOperations(fromTick));
+        this.loading.done();
         this.mode = "live";
         this.root.dataset.mode = "live";
-        this.ticks = ticks;
-        (this.waiting || []).forEach((operation) => this.note(operation));
-        this.waiting = null;
         this.accept(answer);
-        if (first.length) {
-          for (const [name, input] of Object.entries(this.inputs)) {
-            if (name in answer.report.values) input.write(answer.report.values[name]);
-          }
-        }
         this.liveButton.hidden = true;
         this.say(this.playing ? "Live: Python runs in this page." : "Live and paused.");
         if (!this.playing && this.autoplay !== false && !still() && !this.frames.length) {
           this.setPlaying(true);
         }
       } catch (error) {
-        this.waiting = null;
         this.liveButton.disabled = false;
-        this.say("Python could not start: " + String(error.message || error).slice(0, 300));
-      } finally {
-        this.bar.hidden = true;
+        this.loading.fail("Python could not start: " + String(error.message || error).slice(0, 300),
+          () => this.touch(fromTick, control, at));
       }
+    }
+
+    /* The run on the screen, made again: its controls, its seed, its ticks or the moves of a link. What
+       the reader did meanwhile comes after it and is the first that counts as the reader's. */
+    firstOperations(fromTick) {
+      const mine = this.pending;
+      this.pending = [];
+      const changed = mine.map((operation) => operation[1]);
+      const values = Object.entries(this.initial)
+        .filter(([k]) => this.inputs[k] && !changed.includes(k)).map(([k, v]) => ["set", k, v]);
+      const ticks = fromTick ?? this.ticks;
+      const past = this.o.start?.length ? this.o.start : ticks ? [["step", ticks]] : [];
+      this.o.start = null;
+      this.ticks = past.reduce((sum, [kind, n]) => sum + (kind === "step" ? n : 0), 0);
+      mine.forEach((operation) => this.note(operation));
+      return [...values, ["reset", this.seed], ...past, ["watch"], ...mine];
     }
 
     /* ---- the exact run in the address ------------------------------------------------------ */

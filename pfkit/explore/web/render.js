@@ -122,6 +122,12 @@
         v.y0 - (clientY - box.top - v.bottom) / v.sy];
     }
 
+    /* The other way round: where a place in the first view is on the page. */
+    place(x, y) {
+      const box = this.canvas.getBoundingClientRect(), v = this.first;
+      return [box.left + v.left + (x - v.x0) * v.sx, box.top + v.bottom - (y - v.y0) * v.sy];
+    }
+
     points(d, style) {
       const n = (d.length - 1) / 2, size = d[0], c = this.context;
       if (n > 1500) return this.splat(d, style, n);
@@ -229,7 +235,8 @@
       }
     }
 
-    /* The shapes of pfkit.plotting: truth a filled arrowhead, a guess an empty circle with a nose. */
+    /* The shapes of pfkit.plotting: truth a filled arrowhead, a guess an empty ring with a nose, which
+       hides nothing. */
     robots(d, style) {
       const n = (d.length - 2) / 3, c = this.context;
       const r = Math.max(d[0] * this.v.sx, 5), colour = this.color(style);
@@ -239,8 +246,8 @@
         c.rotate(-d[k + 2 * n]);
         c.beginPath();
         if (d[1]) {
-          c.arc(0, 0, r, 0, 7);
-          c.moveTo(0, 0);
+          c.arc(0, 0, r, 0, 2 * Math.PI);
+          c.moveTo(r, 0);
           c.lineTo(r * 1.7, 0);
         } else {
           c.moveTo(r * 1.5, 0);
@@ -248,10 +255,9 @@
           c.lineTo(-r, -r * 0.85);
           c.closePath();
         }
-        c.fillStyle = d[1] ? this.colours.paper : colour;
         c.strokeStyle = d[1] ? colour : this.colours.paper;
         c.lineWidth = d[1] ? 2 : 1;
-        c.fill();
+        if (!d[1]) c.fill();
         c.stroke();
         c.restore();
       }
@@ -414,7 +420,7 @@
     const floats = new Float32Array(unplane(await inflate(recording.floats), 4));
     const deltas = new Int16Array(unplane(await inflate(recording.deltas), 2));
     let h = 0, f = 0, d = 0;
-    return recording.frames.map(([nh, , , ticks, readouts, done]) => {
+    return recording.frames.map(([nh, , , ticks, readouts, handles]) => {
       const out = [];
       for (const end = h + nh; h < end; h += 3) {
         const op = heads[h], n = heads[h + 2], lead = LEAD[op] || 0;
@@ -433,7 +439,7 @@
           }
         }
       }
-      return { drawing: Float32Array.from(out), report: { ticks, readouts, done } };
+      return { drawing: Float32Array.from(out), report: { ticks, readouts, handles } };
     });
   };
 })((globalThis.PF = globalThis.PF || {}));
