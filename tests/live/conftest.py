@@ -40,10 +40,6 @@ SCENES = """# Explorables
 ```{explorable} comb
 :seed: 7
 :alt: One bar of weights and five rows of teeth.
-
-1. Watch **ten** draws.
-2. Choose equal weights.
-3. Follow the tree.
 ```
 """
 LANGUAGE = {"language_info": {"name": "python", "pygments_lexer": "ipython3"}}
@@ -163,7 +159,8 @@ def open_page(chromium, address):
 
     def open_it(page: str, base: str = address, init: str = "", **options) -> Page:
         context = chromium.new_context(
-            viewport={"width": options.pop("width", 1280), "height": 900}, **options
+            viewport={"width": options.pop("width", 1280), "height": options.pop("height", 900)},
+            **options,
         )
         if init:
             context.add_init_script(init)

@@ -7,6 +7,8 @@ from pathlib import Path
 
 import pytest
 
+from pfkit.explore import scene
+
 ROOT = Path(__file__).resolve().parents[2]
 
 
@@ -101,11 +103,18 @@ def test_an_unknown_scene_fails_the_build(live_page, tmp_path, capfd):
 
 def test_without_the_runtime_a_page_keeps_still_and_missions(live_page, tmp_path, monkeypatch):
     monkeypatch.setattr(live_page, "SITE", tmp_path / "nothing")
-    assert build(tmp_path, "# T\n\n```{explorable} comb\n:seed: 3\n\n1. Look.\n```\n", "-W") == 0
+    assert build(tmp_path, "# T\n\n```{explorable} comb\n:seed: 3\n```\n", "-W") == 0
     page = (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
-    assert 'src="live-runs/comb-comb-3.svg"' in page and "Look." in page
+    assert 'src="live-runs/comb-comb-3.svg"' in page and "two halves" not in page
+    assert all(mission.text in page for mission in scene("comb").panel.missions)
     assert (tmp_path / "out" / "live-runs" / "comb-comb-3.svg").exists()
     assert "page.js" not in page
+
+
+def test_missions_are_the_scenes_own(live_page, tmp_path, capfd):
+    """Words of a page's own would be ticked by nothing."""
+    assert build(tmp_path, "# T\n\n```{explorable} comb\n\n1. Look.\n```\n", "-W") != 0
+    assert "none permitted" in capfd.readouterr().err
 
 
 def test_a_lab_without_python_keeps_its_cells(live_page, tmp_path, monkeypatch):

@@ -297,7 +297,7 @@ def test_without_scripts_there_is_a_still_with_a_text(open_page):
         assert len(stills.nth(k).get_attribute("alt")) > 20
         stills.nth(k).scroll_into_view_if_needed()
         assert stills.nth(k).bounding_box()["height"] > 100
-    assert bare.tab.get_by_text("Choose equal weights").is_visible()
+    assert bare.tab.get_by_text("Make two weights equal to one half").is_visible()
 
 
 def test_who_asked_for_no_motion_gets_none(open_page):

@@ -182,10 +182,11 @@
         const shown = el("output", { for: id });
         const slider = el("input", { type: "range", id, min: log ? 0 : c.lo, max: log ? 1000 : c.hi,
           step: log ? 1 : c.step, "aria-describedby": described, oninput: () => {
-            const v = from(slider.value);
-            label(v);
-            this.change(c.name, v, slider);
+            label(from(slider.value));
+            if (!thumb.undecided) act();
           } });
+        const act = () => this.change(c.name, from(slider.value), slider);
+        const thumb = new PF.Thumb(slider, act, (old) => { slider.value = old; label(from(old)); });
         const label = (v) => {
           shown.textContent = written(v, decimals) + (c.unit ? "\u202f" + c.unit : "");
           slider.setAttribute("aria-valuetext", shown.textContent);

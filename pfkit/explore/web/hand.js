@@ -1,7 +1,8 @@
 /* The reader's hand on the picture. A mouse acts where it presses. A finger acts in two ways only: it
    taps, or it takes hold of a handle and drags it. Any other movement scrolls the page, and the
    picture takes no notice. Whether a touch holds something is decided when it begins, by distance.
-   A classic script; adds PF.Hand. */
+   A classic script; adds PF.Hand
+   and PF.Thumb. */
 (function (PF) {
   "use strict";
 
@@ -74,6 +75,34 @@
       const { acts, from } = this.held;
       this.held = null;
       if (acts) this.send({ clientX: from[0], clientY: from[1] }, CANCEL);
+    }
+  };
+
+  /* A finger on a slider. Browsers move the thumb as soon as a swipe begins there; the value counts only
+     when the finger went sideways or was lifted in its place, else the old one comes back. */
+  PF.Thumb = class {
+    constructor(slider, act, restore) {
+      this.undecided = null;
+      const settle = (keep) => {
+        const { value } = this.undecided;
+        this.undecided = null;
+        if (!keep) restore(value);
+        else if (slider.value !== value) act();
+      };
+      const went = (e) => [Math.abs(e.clientX - this.undecided.x), Math.abs(e.clientY - this.undecided.y)];
+      slider.addEventListener("pointerdown", (e) => {
+        if (e.pointerType === "mouse") return;
+        this.undecided = { value: slider.value, x: e.clientX, y: e.clientY };
+      });
+      slider.addEventListener("pointermove", (e) => {
+        if (!this.undecided) return;
+        const [across, along] = went(e);
+        if (across > STILL && across > along) settle(true);
+      });
+      slider.addEventListener("pointerup", (e) => {
+        if (this.undecided) settle(went(e)[1] <= STILL);
+      });
+      slider.addEventListener("pointercancel", () => { if (this.undecided) settle(false); });
     }
   };
 })((globalThis.PF = globalThis.PF || {}));

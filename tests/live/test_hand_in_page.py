@@ -1,0 +1,266 @@
+"""A thumb on the picture: a tap acts, a held handle moves, a swipe scrolls and does nothing else."""
+
+from __future__ import annotations
+
+import pytest
+
+pytestmark = pytest.mark.page
+PHONE = {"width": 390, "height": 844}
+HANDS = ("drive", "landmark", "robot")
+STATE = """x => ({ seed: x.seed, values: x.values, history: x.history, pending: x.pending,
+  mode: x.mode, starting: Boolean(x.starting) })"""
+
+
+class Thumb:
+    """One finger, moved as the browser's own input: pages scroll, gestures are recognised."""
+
+    def __init__(self, page):
+        self.tab = page.tab
+        self.wire = page.tab.context.new_cdp_session(page.tab)
+
+    def touch(self, kind: str, *points: tuple[float, float]) -> None:
+        touches = [{"x": x, "y": y, "id": k} for k, (x, y) in enumerate(points)]
+        self.wire.send("Input.dispatchTouchEvent", {"type": kind, "touchPoints": touches})
+
+    def drag(self, start: tuple[float, float], by: tuple[float, float], steps: int = 12) -> None:
+        self.touch("touchStart", start)
+        for k in range(1, steps + 1):
+            self.touch("touchMove", (start[0] + by[0] * k / steps, start[1] + by[1] * k / steps))
+            self.tab.wait_for_timeout(16)
+        self.tab.wait_for_timeout(200)  # a finger that rests throws nothing
+        self.touch("touchMove", (start[0] + by[0], start[1] + by[1]))
+        self.touch("touchEnd")
+        self.tab.wait_for_timeout(250)
+
+    def tap(self, at: tuple[float, float]) -> None:
+        self.touch("touchStart", at)
+        self.tab.wait_for_timeout(40)
+        self.touch("touchEnd")
+
+
+@pytest.fixture(scope="module", params=["host", "folder"])
+def phone(request, open_page, site):
+    """A recorded explorable on a phone, with room to scroll both ways."""
+    base = {} if request.param == "host" else {"base": site.as_uri() + "/"}
+    page = open_page("scenes.html", has_touch=True, is_mobile=True, **PHONE, **base)
+    page.x = page.explorable()
+    page.tab.add_style_tag(content="body { padding-block: 900px }")
+    page.tab.wait_for_function(f"{page.x}.frames.length > 10 && {page.x}.report")
+    page.thumb = Thumb(page)
+    yield page
+    assert not page.errors and not page.outside()
+    page.tab.context.close()
+
+
+@pytest.fixture(scope="module")
+def live_phone(open_page):
+    page = open_page("scenes.html", has_touch=True, is_mobile=True, **PHONE)
+    page.x = page.live()
+    page.tab.add_style_tag(content="body { padding-block: 900px }")
+    page.thumb = Thumb(page)
+    return page
+
+
+def middle(page, selector: str) -> tuple[float, float]:
+    """Scroll an element into the middle of the screen and return its own middle."""
+    at = page.tab.locator(selector).first
+    at.evaluate("e => e.scrollIntoView({ block: 'center', behavior: 'instant' })")
+    page.tab.wait_for_timeout(100)
+    box = at.bounding_box()
+    return box["x"] + box["width"] / 2, box["y"] + box["height"] / 2
+
+
+def scrolled(page) -> float:
+    return page.tab.evaluate("document.scrollingElement.scrollTop")
+
+
+def free_place(page) -> tuple[float, float]:
+    """A place in the picture, 60 pixels from all that can be held."""
+    return tuple(
+        page.tab.evaluate(
+            f"""(() => {{
+              const x = {page.x}, box = x.canvas.getBoundingClientRect(), v = x.renderer.first;
+              const held = x.report.handles.map(([a, b]) => x.renderer.place(a, b));
+              for (let i = 1; i < 10; i++) for (let j = 1; j < 10; j++) {{
+                const p = [box.left + v.left + i / 10 * v.width,
+                  box.top + v.bottom - j / 10 * v.height];
+                if (held.every(([a, b]) => Math.hypot(a - p[0], b - p[1]) > 60)) return p;
+              }}
+            }})()"""
+        )
+    )
+
+
+def handle(page, k: int = 0) -> tuple[float, float]:
+    return tuple(page.tab.evaluate(f"{page.x}.renderer.place(...{page.x}.report.handles[{k}])"))
+
+
+def settle(page) -> None:
+    page.tab.wait_for_function(f"!{page.x}.busy && !{page.x}.pending.length")
+
+
+def choose(page, hand: str) -> None:
+    page.tab.evaluate(f"{page.x}.change('hand', {hand!r})")
+    settle(page)
+
+
+SWIPED = [
+    ".pf-canvas",
+    ".pf-control input[type=range]",
+    ".pf-segments label",
+    ".pf-is-button button",
+    ".pf-is-toggle label",
+    ".pf-transport button:nth-of-type(3)",
+    ".pf-missions li",
+]
+
+
+@pytest.mark.parametrize("selector", SWIPED)
+@pytest.mark.parametrize("up", [True, False])
+def test_a_swipe_scrolls_and_loads_nothing(phone, selector, up):
+    at = middle(phone, selector)
+    if selector == ".pf-canvas":
+        at = free_place(phone)
+    asked, before = len(phone.requests), phone.tab.evaluate(f"({STATE})({phone.x})")
+    top = scrolled(phone)
+    phone.thumb.drag(at, (0, -150 if up else 150))
+    moved = (scrolled(phone) - top) * (1 if up else -1)
+    assert moved == pytest.approx(150, abs=25) if selector == ".pf-canvas" else 60 < moved < 180
+    assert phone.tab.evaluate(f"({STATE})({phone.x})") == before
+    assert len(phone.requests) == asked
+
+
+def test_a_finger_moves_a_slider_sideways(live_phone):
+    page = live_phone
+    at = middle(page, ".pf-control input[type=range]")
+    before = page.tab.evaluate(f"{page.x}.values.M")
+    page.thumb.drag(at, (60, 4))
+    page.tab.wait_for_function(f"{page.x}.values.M > {1.5 * before}")
+    page.thumb.tap(at)
+    page.tab.wait_for_function(f"{page.x}.values.M < {1.5 * before}")
+
+
+@pytest.mark.parametrize("hand", HANDS)
+def test_a_swipe_over_a_live_picture_changes_nothing(live_phone, hand):
+    page = live_phone
+    page.tab.evaluate(f"{page.x}.setPlaying(false)")
+    choose(page, hand)
+    middle(page, ".pf-canvas")
+    for by in ((0, -140), (0, 140), (6, -140)):
+        before = page.tab.evaluate(f"[{page.x}.ticks, {page.x}.history, {page.x}.report]")
+        top = scrolled(page)
+        page.thumb.drag(free_place(page), by)
+        assert scrolled(page) - top == pytest.approx(-by[1], abs=25)
+        settle(page)
+        assert page.tab.evaluate(f"[{page.x}.ticks, {page.x}.history, {page.x}.report]") == before
+
+
+def test_a_held_landmark_moves_and_the_page_stays(live_phone):
+    page = live_phone
+    page.tab.evaluate(f"{page.x}.setPlaying(false)")
+    choose(page, "landmark")
+    middle(page, ".pf-canvas")
+    start, top = handle(page, 1), scrolled(page)
+    number = page.tab.evaluate(f"{page.x}.report.handles.length")
+    page.thumb.drag(start, (-40, 55 if start[1] < 420 else -55))
+    settle(page)
+    end = handle(page, 1)
+    assert end == pytest.approx(
+        (start[0] - 40, start[1] + (55 if start[1] < 420 else -55)), abs=6
+    )
+    assert scrolled(page) == top
+    assert page.tab.evaluate(f"{page.x}.report.handles.length") == number
+
+
+def test_a_held_robot_is_carried_and_the_page_stays(live_phone):
+    page = live_phone
+    page.tab.evaluate(f"{page.x}.restart(3), {page.x}.setPlaying(false)")
+    choose(page, "robot")
+    middle(page, ".pf-canvas")
+    start, top = handle(page), scrolled(page)
+    by = (30 if start[0] < 190 else -30, 80 if start[1] < 420 else -80)
+    page.thumb.drag(start, by)
+    settle(page)
+    assert handle(page) == pytest.approx((start[0] + by[0], start[1] + by[1]), abs=6)
+    assert scrolled(page) == top
+    page.tab.wait_for_function(f"{page.x}.status.textContent.includes('carried off')")
+
+
+@pytest.mark.parametrize("hand", HANDS)
+def test_a_tap_acts(live_phone, hand):
+    page = live_phone
+    page.tab.evaluate(f"{page.x}.restart(3), {page.x}.setPlaying(false)")
+    choose(page, hand)
+    middle(page, ".pf-canvas")
+    place, handles = free_place(page), page.tab.evaluate(f"{page.x}.report.handles")
+    page.thumb.tap(place)
+    page.tab.wait_for_function(f"{page.x}.history.some(([, name]) => name === 'point')")
+    settle(page)
+    now = page.tab.evaluate(f"{page.x}.report.handles")
+    if hand == "landmark":
+        assert len(now) == len(handles) + 1 and handle(page, -1 % len(now)) == pytest.approx(
+            place, abs=3
+        )
+    elif hand == "robot":
+        assert handle(page) == pytest.approx(place, abs=3)
+    else:  # it drives there and waits
+        page.tab.evaluate(f"{page.x}.change('autopilot', false), {page.x}.setPlaying(true)")
+        gap = f"Math.hypot(...{page.x}.renderer.place(...{page.x}.report.handles[0])"
+        here = f".map((v, k) => v - [{place[0]}, {place[1]}][k]))"
+        page.tab.wait_for_function(f"{gap}{here} < 16")
+        page.tab.evaluate(f"{page.x}.change('autopilot', true), {page.x}.setPlaying(false)")
+
+
+def test_a_tap_on_a_recorded_picture_starts_python_and_acts(phone):
+    middle(phone, ".pf-canvas")
+    phone.thumb.tap(free_place(phone))
+    phone.tab.wait_for_function(f"{phone.x}.mode === 'live'")
+    assert phone.tab.evaluate(f"{phone.x}.history.map(h => [h[1], h[2][2]])") == [["point", 3]]
+
+
+# The last on this page: it stays magnified.
+def test_two_fingers_and_a_sideways_swipe_change_nothing(live_phone):
+    page = live_phone
+    page.tab.evaluate(f"{page.x}.setPlaying(false)")
+    choose(page, "landmark")
+    middle(page, ".pf-canvas")
+    before = page.tab.evaluate(f"{page.x}.report")
+    x, y = free_place(page)
+    page.thumb.drag((x, y), (70, 0))
+    page.thumb.touch("touchStart", (x, y))
+    page.thumb.touch("touchStart", (x, y), (x + 40, y + 40))
+    page.thumb.touch("touchMove", (x - 30, y - 30), (x + 70, y + 70))
+    page.thumb.touch("touchEnd")
+    page.tab.wait_for_timeout(200)
+    settle(page)
+    assert page.tab.evaluate(f"{page.x}.report") == before
+
+
+# ---- keys -------------------------------------------------------------------------------------
+
+
+def test_no_key_of_the_picture_acts_on_a_focused_control(open_page):
+    """k, n, a, d, r, full stop: pressed in any control of the explorable, nothing happens to it."""
+    page = open_page("scenes.html")
+    x = page.live()
+    page.tab.evaluate(f"{x}.setPlaying(false), {x}.change('hand', 'landmark')")
+    settle_ = f"!{x}.busy && !{x}.pending.length && {x}.report.values.hand === 'landmark'"
+    page.tab.wait_for_function(settle_)
+    page.tab.evaluate(f"{x}.setPlaying(false)")
+    controls = page.tab.locator(".pf-explorable").first.locator("button, input, select")
+    for k in range(controls.count()):
+        control = controls.nth(k)
+        if not control.is_visible() or control.get_attribute("type") == "number":
+            continue
+        control.focus()
+        before = page.tab.evaluate(f"({STATE})({x})")
+        for key in ("k", "n", "a", "d", "r", ".", "/"):
+            page.tab.keyboard.press(key)
+        assert page.tab.evaluate(f"({STATE})({x})") == before
+        assert page.tab.evaluate("document.activeElement") is not None
+    seed = page.tab.locator(".pf-seed input").first
+    seed.focus()
+    ticks = page.tab.evaluate(f"{x}.ticks")
+    page.tab.keyboard.type("1.r k")
+    assert page.tab.evaluate(f"{x}.ticks") == ticks
+    page.tab.context.close()
