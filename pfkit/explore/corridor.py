@@ -197,7 +197,7 @@ class Corridor(Scene):
         self._tell_best()
 
     def _tell_best(self) -> None:
-        """One sentence when a cell comes to hold half of the belief, and when none does any more."""
+        """One sentence when a cell comes to hold half of the belief, and when none does."""
         best = int(self.bel.argmax())
         half = bool(self.bel[best] > 0.5)
         if half and not self.told_half:

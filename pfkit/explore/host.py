@@ -40,8 +40,8 @@ class Host:
         key : str
             As given to `open`.
         operations : str
-            JSON list of ["reset", seed], ["set", name, value], ["step", n], or ["watch"]: what comes
-            before it was no deed of the reader.
+            JSON list of ["reset", seed], ["set", name, value], ["step", n], or ["watch"]: what
+            comes before it was no deed of the reader.
 
         Returns
         -------
@@ -70,7 +70,7 @@ def _apply(s: Scene, operation: list[Any]) -> None:
         case ["watch"]:
             s.watch()
         case _:
-            raise ParameterError(f"operation {operation!r:.80} is not one of reset, set, step, watch")
+            raise ParameterError(f"operation {operation!r:.60}: give one of reset, set, step, watch")
 
 
 def report(s: Scene, readouts: dict[str, float | str]) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""A thumb on the picture: a tap acts, a held handle moves, a swipe scrolls and does nothing else."""
+"""A thumb on the picture: a tap acts, a held handle moves, a swipe scrolls and nothing else."""
 
 from __future__ import annotations
 
@@ -165,9 +165,7 @@ def test_a_held_landmark_moves_and_the_page_stays(live_phone):
     page.thumb.drag(start, (-40, 55 if start[1] < 420 else -55))
     settle(page)
     end = handle(page, 1)
-    assert end == pytest.approx(
-        (start[0] - 40, start[1] + (55 if start[1] < 420 else -55)), abs=6
-    )
+    assert end == pytest.approx((start[0] - 40, start[1] + (55 if start[1] < 420 else -55)), abs=6)
     assert scrolled(page) == top
     assert page.tab.evaluate(f"{page.x}.report.handles.length") == number
 
