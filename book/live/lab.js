@@ -144,6 +144,7 @@
       this.checkButton = button("Check", () => this.run(true),
         { class: "pf-check", hidden: !check, title: "Ctrl+Enter" });
       this.stopButton = button("Stop", () => this.stop("Stopped by you."), { class: "pf-stop", hidden: true });
+      this.againButton = button("Try again", () => this.run(this.checking), { hidden: true });
       this.resetButton = button("Reset", () => {
         this.editor.set(cell.source);
         this.note.textContent = "Reset." + (cell.choose ? "" : " Undo brings your answer back.");
@@ -160,7 +161,7 @@
           this.note, this.clock),
         this.offer, this.conflict, this.choices ? this.choices.root : null, code, this.warning,
         this.buttons = el("div", { class: "pf-row" }, this.runButton, this.checkButton,
-          this.resetButton, this.stopButton),
+          this.resetButton, this.stopButton, this.againButton),
         this.out);
     }
 
@@ -318,7 +319,7 @@
     /* ---- running ---- */
     async run(check) {
       if (busy) {
-        this.note.textContent = "Another answer is still running.";
+        this.note.textContent = `${busy === this ? "This" : "Another"} answer is still running.`;
         return;
       }
       const refusal = check && this.choices && !this.locked ? this.choices.refusal() : "";
@@ -327,10 +328,14 @@
         return;
       }
       busy = this;
+      this.checking = check;
       this.save();
       const source = this.text, began = performance.now();
+      const pressed = check ? this.checkButton : this.runButton;
+      pressed.setAttribute("aria-busy", "true");
       this.runButton.disabled = this.checkButton.disabled = true;
       this.stopButton.hidden = false;
+      this.againButton.hidden = true;
       this.stopped = "";
       try {
         await this.boot();
@@ -353,6 +358,7 @@
         this.note.textContent = this.out.textContent;
       } finally {
         this.clock.textContent = "";
+        pressed.removeAttribute("aria-busy");
         this.runButton.disabled = this.checkButton.disabled = false;
         this.stopButton.hidden = true;
         busy = null;
@@ -368,8 +374,8 @@
       try {
         await python.start();
       } catch (error) {
-        throw this.stopped ? error
-          : new Error(`Python could not be loaded (${error.message || error}). Try again: press the button once more.`);
+        this.againButton.hidden = Boolean(this.stopped);
+        throw new Error(`Python could not be loaded: ${error.message || error}`);
       } finally {
         python.listeners.delete(progress);
         this.clock.textContent = "";

@@ -6,8 +6,7 @@ import json
 from contextlib import contextmanager
 
 import pytest
-from conftest import Page
-from typing_reader import Reader
+from reader import Page, Reader
 
 pytestmark = pytest.mark.page
 FULL = """

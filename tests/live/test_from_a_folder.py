@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
-from typing_reader import Reader
+from reader import Reader
 
 from pfkit.explore.host import Host
 

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from typing_reader import Reader
+from reader import Reader
 
 pytestmark = pytest.mark.page
 ROOT = Path(__file__).resolve().parents[2]
@@ -51,6 +51,21 @@ def test_only_answer_cells_become_editors(lab):
     assert lab.tab.locator(".pf-answer").count() == 3
     assert lab.tab.locator("div.cell").count() == 3  # imports, use, print
     assert not [u for u in lab.page.requests if "pyodide" in u]  # nobody asked yet
+
+
+def test_a_download_that_is_cut_can_be_tried_again(open_page):
+    page = open_page("lab.html")
+    reader = Reader(page)
+    page.tab.route("**/numpy.zip*", lambda route: route.abort())
+    reader.type("p1a", "6 * 7")
+    reader.press("p1a", "Run")
+    again = reader.group("p1a").get_by_role("button", name="Try again")
+    again.wait_for()
+    assert "Python could not be loaded" in reader.said("p1a")
+    page.tab.unroute("**/numpy.zip*")
+    again.click()
+    assert "42" in reader.wait("p1a") and not again.is_visible()
+    page.tab.context.close()
 
 
 def test_few_words_while_loading_then_wrong_gets_its_hint(lab):

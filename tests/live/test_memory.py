@@ -6,8 +6,7 @@ import time
 from pathlib import Path
 
 import pytest
-from conftest import Page
-from typing_reader import Reader
+from reader import Page, Reader
 
 pytestmark = pytest.mark.page
 MOST = 700e6  # bytes of the page's process after the run

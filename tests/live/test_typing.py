@@ -7,7 +7,7 @@ import re
 from pathlib import Path
 
 import pytest
-from typing_reader import Reader
+from reader import Reader
 
 pytestmark = pytest.mark.page
 PRINTABLE = [chr(k) for k in range(33, 127)]

@@ -1,4 +1,4 @@
-"""A reader of a lab page: what they type goes through the keyboard, one key after the other.
+"""A page in a tab, and a reader of a lab: they type on the keyboard, one key after the other.
 
 Nothing here sets a text by script, and the page offers no way to do so.
 """
@@ -8,6 +8,36 @@ from __future__ import annotations
 import json
 
 STARTED = "window.PF && PF.lab"
+
+
+class Page:
+    """A tab that notes script errors and requests that leave the book."""
+
+    def __init__(self, context, base: str, page: str):
+        self.tab, self.base = context.new_page(), base
+        self.errors: list[str] = []
+        self.requests: list[str] = []
+        self.tab.on("pageerror", lambda error: self.errors.append(str(error)))
+        self.tab.on("request", lambda request: self.requests.append(request.url))
+        self.tab.on("dialog", lambda dialog: (self.errors.append("dialog"), dialog.dismiss()))
+        self.tab.goto(base + page)
+
+    def outside(self) -> list[str]:
+        return [u for u in self.requests if not u.startswith((self.base, "data:", "blob:"))]
+
+    def explorable(self, number: int = 0):
+        """Scroll to an explorable and wait until it is more than a still."""
+        self.tab.locator(".pf-explorable").nth(number).scroll_into_view_if_needed()
+        at = f"document.querySelectorAll('.pf-explorable')[{number}]"
+        self.tab.wait_for_function(f"{at}.pfExplorable")
+        return at + ".pfExplorable"
+
+    def live(self, number: int = 0) -> str:
+        """Bring an explorable to life; returns the script that names it."""
+        x = self.explorable(number)
+        self.tab.evaluate(f"{x}.touch()")
+        self.tab.wait_for_function(f"{x}.mode === 'live'", timeout=90_000)
+        return x
 
 
 class Reader:
