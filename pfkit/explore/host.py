@@ -70,7 +70,9 @@ def _apply(s: Scene, operation: list[Any]) -> None:
         case ["watch"]:
             s.watch()
         case _:
-            raise ParameterError(f"operation {operation!r:.60}: give one of reset, set, step, watch")
+            raise ParameterError(
+                f"operation {operation!r:.60}: give one of reset, set, step, watch"
+            )
 
 
 def report(s: Scene, readouts: dict[str, float | str]) -> dict[str, Any]:
