@@ -35,7 +35,7 @@ NO_FIGURES = (
 )
 UNBOUND = "The cell binds no {name}: keep the name that stood there, it is what the check looks at."
 NO_MODULE = (
-    "{name} is not in this page, which has Python's standard library, NumPy and pfkit: "
+    "{name} is not in this page, which has NumPy, pfkit and most of Python's own modules: "
     "run the cell in Jupyter, or do without it"
 )
 
@@ -161,7 +161,7 @@ class Cells:
                 if value is not None and not isinstance(value, Nothing):
                     out.write(repr(value))
             except BaseException as problem:
-                value, error = None, _words(problem, name)
+                value, error = None, _words(problem, cell.source, name)
         if not error:
             self.made[cell.index] = Made(cell.source, self._new(was, cell.bound))
         verdict = value if isinstance(value, Verdict) else Verdict(cell.item, "")
@@ -218,12 +218,14 @@ def no_keyboard() -> Iterator[None]:
         sys.stdin = before
 
 
-def _words(problem: BaseException, name: str) -> str:
+def _words(problem: BaseException, source: str, name: str) -> str:
     """An error in a sentence, with the line of the cell where it happened."""
     if isinstance(problem, SyntaxError) and problem.filename == name:
-        return with_caret(problem)
+        return with_caret(problem, source)
+    if isinstance(problem, SystemExit):
+        return describe(SystemExit("it asked Python to end").with_traceback(problem.__traceback__))
     if isinstance(problem, ModuleNotFoundError) and problem.name:
-        top = problem.name.split(".")[0]
+        top = problem.name.split(".")[0].lstrip("_")
         if top == "matplotlib":
             return NO_FIGURES
         return describe(ModuleNotFoundError(NO_MODULE.format(name=top)).with_traceback(
@@ -231,12 +233,15 @@ def _words(problem: BaseException, name: str) -> str:
     return describe(problem)
 
 
-def with_caret(problem: SyntaxError) -> str:
+def with_caret(problem: SyntaxError, source: str) -> str:
     """What a parser says, the line, and a ^ below the column where it gave up."""
     told = f"{type(problem).__name__} in line {problem.lineno}: {problem.msg}"
-    line = (problem.text or "").rstrip("\n")
+    lines = source.split("\n")[max(0, (problem.lineno or 1) - 1) :]
+    line = (problem.text or lines[0] if lines else "").rstrip("\n")
     if not line.strip():
         return told
+    if line.lstrip().startswith(("%", "!")):
+        told += ". Lines that start with % or ! are commands of Jupyter, not Python"
     column = len(line[: max(0, (problem.offset or 1) - 1)].expandtabs(4))
     start = max(0, column - WIDEST + 8)
     return f"{told}\n  {line.expandtabs(4)[start : start + WIDEST]}\n  {' ' * (column - start)}^"

@@ -172,6 +172,22 @@ def test_the_caret_stands_below_the_column(cells):
     assert max(map(len, long[1:])) < 80 and long[2].strip() == "^"
 
 
+@pytest.mark.parametrize(
+    ("source", "told", "line"),
+    [
+        ("x = 1\nawait x", "'await' outside function", "await x"),
+        ("x = 1\nreturn x", "'return' outside function", "return x"),
+        ("x = 1\nbreak", "'break' outside loop", "break"),
+        ("x = 1\n%timeit x", "are commands of Jupyter", "%timeit x"),
+        ("x = 1\n!ls", "are commands of Jupyter", "!ls"),
+    ],
+)
+def test_what_only_the_compiler_refuses_has_its_line_as_well(cells, source, told, line):
+    error = run(cells, table(source), 0)["error"]
+    assert "SyntaxError in line 2" in error and told in error
+    assert error.splitlines()[1] == f"  {line}" and error.splitlines()[2].strip() == "^"
+
+
 def test_no_name_outlives_its_code(cells):
     assert run(cells, table("a = 2\nb = 3", "print(a)"), 1)["text"] == "2\n"
     assert "'b' is not defined" in run(cells, table("a = 2", "print(a + b)"), 1)["error"]
@@ -196,6 +212,11 @@ def test_sentences_instead_of_stack_traces(cells):
     assert "nobody to ask" in answer_says(cells, "x = input('How many? ')")
     assert "nobody to ask" in answer_says(cells, "import sys\nx = sys.stdin.read()")
     assert "pandas is not in this page" in answer_says(cells, "import pandas as pd")
+    assert "multiprocessing is not" in answer_says(
+        cells, "raise ModuleNotFoundError(name='_multiprocessing')"
+    )
+    assert "asked Python to end" in answer_says(cells, "exit()")
+    assert "asked Python to end" in answer_says(cells, "raise SystemExit")
     assert "scipy is not in this page" in answer_says(cells, "from scipy.stats import norm")
     assert "without end" in answer_says(cells, "def f(): return f()\nx = f()")
     assert "more memory than there is" in answer_says(cells, "x = np = bytearray(1 << 62)")

@@ -53,16 +53,19 @@ def test_only_answer_cells_become_editors(lab):
     assert not [u for u in lab.page.requests if "pyodide" in u]  # nobody asked yet
 
 
-def test_a_download_that_is_cut_can_be_tried_again(open_page):
+@pytest.mark.parametrize("how", ["cut", "stalled"])
+def test_a_download_that_fails_can_be_tried_again(open_page, how):
     page = open_page("lab.html")
     reader = Reader(page)
-    page.tab.route("**/numpy.zip*", lambda route: route.abort())
+    page.tab.evaluate("() => { PF.patience.seconds = 5; }")
+    page.tab.route("**/numpy.zip*", lambda route: route.abort() if how == "cut" else None)
     reader.type("p1a", "6 * 7")
     reader.press("p1a", "Run")
     again = reader.group("p1a").get_by_role("button", name="Try again")
     again.wait_for()
     assert "Python could not be loaded" in reader.said("p1a")
     page.tab.unroute("**/numpy.zip*")
+    page.tab.evaluate("() => { PF.patience.seconds = 60; }")
     again.click()
     assert "42" in reader.wait("p1a") and not again.is_visible()
     page.tab.context.close()
