@@ -137,6 +137,24 @@ def test_every_lab_can_be_graded(name, tmp_path):
         rehearsed.rehearse()
 
 
+def test_a_letter_without_a_confidence_counts_as_it_did(tmp_path):
+    """Notebooks and files from before a prediction asked how sure: they load and are graded."""
+    folder = tmp_path / "in"
+    folder.mkdir()
+    book = json.loads(find("lab3").path.read_text(encoding="utf-8"))
+    for cell in book["cells"]:
+        if cell["metadata"].get("answer") == "p4a":
+            cell["source"] = 'p4a = "a"'
+    (folder / "ann.ipynb").write_text(json.dumps(book), encoding="utf-8")
+    guess = {"p4a": {"choice": "c", "sure": None, "version": "x"}}
+    kept = {"schema": 1, "lab": "lab3", "answers": {}, "predictions": guess}
+    (folder / "bob.json").write_text(json.dumps(kept), encoding="utf-8")
+    words, env = command(folder, tmp_path / "grades.csv")
+    subprocess.run(words, env=env, capture_output=True, check=True, timeout=400)
+    rows = table(tmp_path / "grades.csv")
+    assert [rows[name]["p4a"] for name in ("ann.ipynb", "bob.json")] == ["1", "1"]
+
+
 def test_a_broken_installation_is_said_once(tmp_path, monkeypatch):
     (tmp_path / "numpy.py").write_text("raise ImportError('no numpy here')")
     monkeypatch.setenv("PYTHONPATH", str(tmp_path))
