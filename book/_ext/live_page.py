@@ -127,6 +127,17 @@ def visit_other(writer: Any, node: explorable) -> None:
     """Other builders show the missions alone."""
 
 
+def python_size(
+    name: str, raw: str, text: str, line: int, inliner: Any, *rest: Any
+) -> tuple[list[nodes.Node], list[nodes.Node]]:
+    """The role ``python-size``: what a page loads to compute, in megabytes, as it was packed."""
+    manifest = SITE / "manifest.json"
+    if not manifest.exists():
+        return [nodes.Text("not part of this copy")], []
+    total = sum(json.loads(manifest.read_text(encoding="utf-8")).values())
+    return [nodes.Text(f"{total / 1e6:.1f} {text}")], []
+
+
 # ---- lab cells ------------------------------------------------------------------------------
 
 
@@ -285,6 +296,7 @@ def setup(app: Sphinx) -> dict[str, Any]:
     others = {name: (visit_other, visit_other) for name in ("latex", "text", "man", "texinfo")}
     app.add_node(explorable, html=(visit_html, depart_html), **others)
     app.add_directive("explorable", Explorable)
+    app.add_role("python-size", python_size)
     app.connect("env-purge-doc", forget)
     app.connect("env-merge-info", merge)
     app.connect("doctree-read", find_lab_cells)

@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import json
+import re
 import sys
+from importlib import import_module
 from pathlib import Path
 
 import pytest
@@ -109,6 +112,52 @@ def test_without_the_runtime_a_page_keeps_still_and_missions(live_page, tmp_path
     assert all(mission.text in page for mission in scene("comb").panel.missions)
     assert (tmp_path / "out" / "live-runs" / "comb-comb-3.svg").exists()
     assert "page.js" not in page
+
+
+def test_pages_say_the_megabytes_that_were_packed(live_page, tmp_path, monkeypatch):
+    monkeypatch.setattr(live_page, "SITE", tmp_path)
+    text = "# T\n\nIt loads Python ({python-size}`megabytes`).\n"
+    for sizes, said in ((None, "(not part of this copy)"), ([9_100_000, 140_000], "(9.2 mega")):
+        if sizes:
+            manifest = {f"part{k}": size for k, size in enumerate(sizes)}
+            (tmp_path / "manifest.json").write_text(json.dumps(manifest))
+        assert build(tmp_path, text, "-W", "-E") == 0
+        assert said in (tmp_path / "out" / "index.html").read_text(encoding="utf-8")
+
+
+def test_no_page_types_in_how_much_python_weighs():
+    """Megabytes in prose go stale; the role fills them in."""
+    number = re.compile(r"\b(\d[\d.,]*|one|two|five|nine|ten|twenty)\s+(MB\b|megabytes)", re.I)
+    pages = [*(ROOT / "book").glob("*.md"), ROOT / "README.md"]
+    cells = [
+        (path, "".join(cell["source"]))
+        for path in (ROOT / "notebooks").rglob("*.ipynb")
+        for cell in json.loads(path.read_text(encoding="utf-8"))["cells"]
+        if cell["cell_type"] == "markdown"
+    ]
+    texts = [(path, path.read_text(encoding="utf-8")) for path in pages] + cells
+    loads = [(p.name, m[0]) for p, t in texts for m in number.finditer(t) if "Python" in t]
+    assert loads == []
+
+
+def test_the_tours_mistake_has_a_name(tmp_path, monkeypatch):
+    """What the tour asks its visitor to type is a mistake that the first chapter knows."""
+    tour = (ROOT / "book" / "tour.md").read_text(encoding="utf-8")
+    chapter, source = re.search(
+        r"notebooks/(\w+)\.ipynb\) and go to .*?```python\n(.+?)\n```", tour, re.S
+    ).groups()
+    cells = json.loads((ROOT / "notebooks" / f"{chapter}.ipynb").read_text("utf-8"))["cells"]
+    item = re.search(r"question `(\w+)`", tour)[1]
+    (asked,) = [c for c in cells if c["metadata"].get("answer") == item]
+    assert source.split(" =")[0] == "".join(asked["source"]).split(" =")[0]
+    loaded = "\n".join("".join(c["source"]) for c in cells if c["cell_type"] == "code")
+    module = re.search(r"from pfkit\.labs import (\w+)", loaded)[1]
+    monkeypatch.chdir(tmp_path)  # a lab keeps its answers beside the notebook
+    values: dict = {}
+    exec(source, values)
+    lab = import_module(f"pfkit.labs.{module}").LAB
+    verdict = lab.check(item, values[source.split(" =")[0]])
+    assert verdict.status == "wrong" and verdict.misconception == "backwards"
 
 
 def test_missions_are_the_scenes_own(live_page, tmp_path, capfd):

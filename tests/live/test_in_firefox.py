@@ -143,6 +143,14 @@ def test_explorables_and_answers_work(firefox, site, address, where):
     host.open("k", "drive", None, 8)
     here = json.loads(host.do("k", OPERATIONS)[1])["readouts"]
     assert firefox.evaluate(READOUTS) == pytest.approx(here, rel=1e-9, abs=1e-9)
+    firefox.evaluate(f"{X}.change('kidnap', true)")
+    firefox.wait(f"{X}.status.textContent.includes('carried off')")
+    firefox.wait("!document.querySelector('.pf-loading, [aria-busy]')")
+    firefox.evaluate(f"{X}.change('fresh', 5)")
+    firefox.wait("document.querySelector('.pf-done')")  # found again, and ticked off
+    firefox.goto(base + "scenes.html")
+    firefox.evaluate("document.querySelector('.pf-explorable').scrollIntoView()")
+    firefox.wait("document.querySelector('.pf-done')")
     firefox.goto(base + "lab.html")
     firefox.wait("window.PF && PF.lab")
     firefox.click("document.querySelector('[name=pf-choice-p1a][value=a]')")

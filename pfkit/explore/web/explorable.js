@@ -30,9 +30,12 @@
     if (typeof value !== "number") return value;
     const text = value.toFixed(decimals);
     if (Number(text) === 0) return text.replace("-", "");
-    return (Math.abs(value) >= 10000 ? text.replace(/\B(?=(\d{3})+$)/g, "\u2009") : text)
-      .replace("-", "\u2212");
+    const [whole, part] = text.split(".");
+    const grouped = Math.abs(value) < 10000 ? whole : whole.replace(/\B(?=(\d{3})+$)/g, "\u2009");
+    return (part ? `${grouped}.${part}` : grouped).replace("-", "\u2212");
   }
+
+  PF.written = written;
 
   PF.Explorable = class {
     /* options: about (description), seed, recording (or null), engine() -> promise of an engine,
