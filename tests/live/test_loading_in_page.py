@@ -1,4 +1,4 @@
-"""From a press to Python: seen where it was pressed, told in few words, and tried again when cut."""
+"""From a press to Python: seen where it was pressed, told in few words, tried again when cut."""
 
 from __future__ import annotations
 
@@ -235,7 +235,7 @@ def test_chosen_colours_keep_switches_choices_and_ticks(open_page):
     colours = page.tab.evaluate(
         """() => {
           const root = document.querySelector(".pf-explorable");
-          const look = (e) => { const s = getComputedStyle(e); return [s.backgroundColor, s.color]; };
+          const look = (e) => ["backgroundColor", "color"].map((c) => getComputedStyle(e)[c]);
           const [on, off] = [":checked", ":not(:checked)"].map((w) =>
             look(root.querySelector(`.pf-segments input${w} + span`)));
           const row = root.querySelector(".pf-missions li"), mark = row.querySelector(".pf-mark");
