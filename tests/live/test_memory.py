@@ -45,7 +45,9 @@ def test_memory_comes_back_with_a_sentence(chromium, address):
     for name, source in BOMBS.items():
         told = reader.answer("p5b", source, "Run")
         said = f"{told} {reader.said('p5b')}"
-        assert any(w in said for w in ("memory", "calls itself", "more characters")), (name, said)
+        # On a busy machine deep recursion may last until it is stopped: a sentence as well.
+        words = ("memory", "calls itself", "more characters", "Stopped after")
+        assert any(w in said for w in words), (name, said)
         end = time.monotonic() + 20
         while largest(chromium) > MOST and time.monotonic() < end:
             time.sleep(0.5)
