@@ -110,8 +110,8 @@ MUTATIONS = [
     Mutation(
         "resample-without-measurement",
         "filters.particle_filter",
-        "poor = np.zeros(np.shape(ess), dtype=bool)",
-        "poor = np.broadcast_to(np.asarray(trigger(bel, k), dtype=bool), np.shape(ess))",
+        "if how_many(z) > 0:",
+        "if how_many(z) >= 0:",
         "particles/test_triggers filters/test_particle_filter",
     ),
     Mutation(

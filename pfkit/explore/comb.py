@@ -19,6 +19,7 @@ import numpy as np
 from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
 from pfkit.particles.resampling import SCHEMES
+from pfkit.particles.roulette import roulette_wheel
 
 LETTERS = "12345"
 COLOURS = tuple(f"particle {k}" for k in LETTERS)
@@ -34,21 +35,8 @@ STRIP = 32  # generations that it shows
 
 
 def wheel(w: np.ndarray, rng: np.random.Generator, n: int) -> np.ndarray:
-    """The walking wheel of popular tutorials: nearly a resampler, with a small bias.
-
-    Start at a random particle; n times, walk on by a uniform step of up to twice the largest
-    weight and copy where you stop. Successive stops are dependent and the first index is drawn
-    uniformly, not by weight, so E[N_m] is not exactly n w_m.
-    """
-    index, beta = int(rng.integers(w.size)), 0.0
-    picks = np.empty(n, np.int64)
-    for k in range(n):
-        beta += rng.random() * 2.0 * w.max()
-        while beta > w[index]:
-            beta -= w[index]
-            index = (index + 1) % w.size
-        picks[k] = index
-    return np.sort(picks)
+    """The wheel of `pf.roulette_wheel`, its picks in the order of the bar."""
+    return np.sort(roulette_wheel(w, rng, n))
 
 
 FIVE = {**SCHEMES, "wheel": wheel}

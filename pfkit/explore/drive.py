@@ -27,6 +27,7 @@ ROUTES = {
     "arena": np.array([[2.0, 8.0, 8.4, 5.0, 1.6], [2.4, 1.6, 6.0, 4.6, 6.6]]),
     "square": np.array([[7.5, 12.5, 12.5, 7.5, 2.5, 2.5], [2.5, 2.5, 12.5, 12.5, 12.5, 2.5]]),
 }
+SQUARE_TURNS = pf.symmetries(pf.worlds.square())  # (3, 4), the first is none
 CARRIED = 3.0  # metres; a kidnapper takes the robot at least so far
 REACHED = 0.25  # metres; so near to where it was sent, the robot has arrived
 LOST = 1.5  # metres; a filter this wrong and still sure of itself is told of
@@ -200,7 +201,9 @@ class Drive(Scene):
             if (n := self.counts["resampled"]) in (1, 10, 100, 1000):
                 times = "for the first time" if n == 1 else f"{n} times so far"
                 self.tell(f"Resampled {times}; the effective size was {self.ess:.0f}.")
-            self._inject(v["fresh"] / 100)
+            if v["fresh"]:
+                share = v["fresh"] / 100
+                self.bel, _ = pf.inject(self.bel, share, self.world.sample_poses, self.rng)
 
     def _measure(self) -> np.ndarray:
         """One reading of each landmark in sight, some of them false: (n, K)."""
@@ -211,14 +214,6 @@ class Drive(Scene):
         z, self.false = self.faults.spoil(z, self.rng)
         self.counts["false"] += int(self.false.sum())
         return z
-
-    def _inject(self, share: float) -> None:
-        """Replace a share of the equally weighted set by poses drawn anywhere."""
-        n = round(share * self.bel.M)
-        if n:
-            self.bel.state[:, self.rng.permutation(self.bel.M)[:n]] = self.world.sample_poses(
-                n, self.rng
-            )
 
     def _judge_filter(self) -> None:
         self.estimate = pf.mean_pose(self.bel)
@@ -248,12 +243,7 @@ class Drive(Scene):
 
     def copies(self) -> np.ndarray:
         """Poses (3, G) that the square cannot tell from the truth; the truth is the first."""
-        centre = 7.5
-        turns = np.arange(4) * np.pi / 2
-        dx, dy = self.truth[0] - centre, self.truth[1] - centre
-        x = centre + dx * np.cos(turns) - dy * np.sin(turns)
-        y = centre + dx * np.sin(turns) + dy * np.cos(turns)
-        return np.stack((x, y, pf.wrap(self.truth[2] + turns)))
+        return pf.images(self.truth, SQUARE_TURNS)
 
     def masses(self) -> np.ndarray:
         """Share of the belief near each of those poses, shape (4,)."""

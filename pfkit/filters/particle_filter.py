@@ -186,7 +186,11 @@ def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
 
 
 def resample(
-    bel: Particles, scheme: Resampler, rng: np.random.Generator, n: int | None = None
+    bel: Particles,
+    scheme: Resampler,
+    rng: np.random.Generator,
+    n: int | None = None,
+    where: ArrayLike = True,
 ) -> Particles:
     r"""Replace weights by copies: particle m appears N_m times, :math:`E[N_m] = n w_m`.
 
@@ -198,10 +202,12 @@ def resample(
     rng : numpy.random.Generator
     n : int, optional
         New number of particles; as many as before if left out.
+    where : bool or bool array (B,)
+        The filters of a batch that are resampled; the others stay as they are.
 
     Returns
     -------
-    Particles with equal weights
+    Particles with equal weights, where resampled
 
     Raises
     ------
@@ -214,7 +220,27 @@ def resample(
     """
     require_particles(bel)
     n = bel.M if n is None else require_count("n", n)
-    return select(bel, _draw(scheme, bel.w, rng, n))
+    rows = np.broadcast_to(np.asarray(where, dtype=bool), bel.log_w.shape[:-1])
+    if n != bel.M and not rows.all():
+        raise ParameterError(f"filters side by side keep one size: n must be {bel.M}, got {n}")
+    return _resampled(bel, scheme, rng, n, rows)[0]
+
+
+def _resampled(
+    bel: Particles, scheme: Resampler, rng: np.random.Generator, n: int, where: NDArray[np.bool_]
+) -> tuple[Particles, NDArray[np.int64]]:
+    """The belief after resampling some filters, and each particle's ancestor: its own elsewhere."""
+    if where.all():
+        ancestors = _draw(scheme, bel.w, rng, n)
+        return select(bel, ancestors), ancestors
+    own = np.broadcast_to(np.arange(n, dtype=np.int64), bel.log_w.shape)
+    if not where.any():
+        return bel, own
+    ancestors = own.copy()
+    ancestors[where] = _draw(scheme, bel.w[where], rng, n)
+    copies = select(bel, ancestors)
+    log_w = np.where(where[..., None], copies.log_w, bel.log_w)
+    return Particles.trusted(copies.state, log_w), ancestors
 
 
 def _draw(scheme: Resampler, w: Array, rng: np.random.Generator, n: int) -> NDArray[np.int64]:
@@ -272,18 +298,8 @@ def step(
     bel = predict(bel, u, motion, rng)
     bel, log_evidence = update(bel, z, sensor)
     ess = bel.ess
-    ancestors = np.broadcast_to(np.arange(bel.M, dtype=np.int64), bel.log_w.shape)
-    if how_many(z) == 0:
-        poor = np.zeros(np.shape(ess), dtype=bool)
-    else:
-        poor = np.broadcast_to(np.asarray(trigger(bel, k), dtype=bool), np.shape(ess))
-    if not poor.any():
-        return bel, Info(log_evidence, ess, poor[()], ancestors)
-    if poor.ndim == 0:
-        ancestors = _draw(scheme, bel.w, rng, bel.M)
-        return select(bel, ancestors), Info(log_evidence, ess, poor[()], ancestors)
-    ancestors = ancestors.copy()
-    ancestors[poor] = _draw(scheme, bel.w[poor], rng, bel.M)
-    copies = select(bel, ancestors)
-    log_w = np.where(poor[..., None], copies.log_w, bel.log_w)
-    return Particles.trusted(copies.state, log_w), Info(log_evidence, ess, poor, ancestors)
+    poor = np.zeros(np.shape(ess), dtype=bool)
+    if how_many(z) > 0:
+        poor |= np.asarray(trigger(bel, k), dtype=bool)
+    bel, ancestors = _resampled(bel, scheme, rng, bel.M, poor)
+    return bel, Info(log_evidence, ess, poor[()], ancestors)

@@ -34,7 +34,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import DataError, ParameterError, require_count
-from pfkit.filters.particle_filter import predict, select, update
+from pfkit.filters.particle_filter import predict, resample, update
 from pfkit.filters.tempering import tempered_update
 from pfkit.geometry import compose
 from pfkit.judging.diagnostics import pose_error, settle_time
@@ -222,7 +222,7 @@ def _filter(
         answers.append(mean_pose(bel))
         spreads.append(covariance(bel))
         if z.shape[1]:
-            bel = _resample_poor(bel, rng)
+            bel = resample(bel, systematic, rng, where=bel.ess < 0.5 * bel.M)
         if watch is not None:
             watch(k + 1, len(log))
     return np.stack(answers, axis=1), np.stack(spreads, axis=2)
@@ -237,17 +237,6 @@ def _weigh(
     if not lost.any():
         return update(bel, z, sensor)[0]
     return tempered_update(bel, z, sensor, rng, np.where(lost, 0.5, 0.0))[0]
-
-
-def _resample_poor(bel: Particles, rng: np.random.Generator) -> Particles:
-    """Resample those filters of a batch whose effective sample size is below M / 2."""
-    poor = np.flatnonzero(bel.ess < 0.5 * bel.M)
-    if not poor.size:
-        return bel
-    state, log_w = bel.state.copy(), bel.log_w.copy()
-    copies = select(Particles(state[:, poor], log_w[poor]), systematic(bel.w[poor], rng))
-    state[:, poor], log_w[poor] = copies.state, copies.log_w
-    return Particles(state, log_w)
 
 
 class Score(NamedTuple):

@@ -158,29 +158,19 @@ def track(
         mean = np.einsum("d...m,...m->d...", bel.state[:2], w)
         error[k] = np.hypot(*(mean - log.truth[:2, k].reshape(2, *(1,) * len(batch))))
         if scheme is not None:
-            bel = _resampled(bel, scheme, rng, ~rejected[k])
+            bel = pf.resample(bel, _row_by_row(scheme), rng, where=~rejected[k])
     return Track(error, ess, likelihood, rejected, bel)
 
 
-def _resampled(
-    bel: pf.Particles, scheme: Resampler, rng: np.random.Generator, rows: NDArray[np.bool_]
-) -> pf.Particles:
-    """Resample where the measurement was accepted; all rows that do share one call."""
-    if not rows.any():
-        return bel
-    if rows.ndim == 0 or rows.all():
-        return pf.select(bel, _ancestors(bel.w, scheme, rng))
-    ancestors = np.tile(np.arange(bel.M, dtype=np.int64), (*rows.shape, 1))
-    ancestors[rows] = _ancestors(bel.w[rows], scheme, rng)
-    copies = pf.select(bel, ancestors)
-    return pf.Particles(copies.state, np.where(rows[..., None], copies.log_w, bel.log_w))
+def _row_by_row(scheme: Resampler) -> Resampler:
+    """A scheme that may know only single sets and their own size (a student's), for batches."""
 
+    def rows(w: Array, rng: np.random.Generator, n: int) -> NDArray[np.int64]:
+        if w.ndim == 1:
+            return scheme(w, rng)
+        return np.stack([scheme(row, rng) for row in w])
 
-def _ancestors(w: Array, scheme: Resampler, rng: np.random.Generator) -> NDArray[np.int64]:
-    """Call a scheme, row by row if it knows only single sets (a student's may)."""
-    if w.ndim == 1 or scheme in pf.SCHEMES.values():
-        return scheme(w, rng)
-    return np.stack([scheme(row, rng) for row in w])
+    return scheme if scheme in pf.SCHEMES.values() else rows
 
 
 __all__ = [
