@@ -24,6 +24,7 @@ CORE: dict[str, dict[str, str]] = {
     "particles": {
         "particles.particle_set": "Particles equal_log_weights ess from_weights normalise",
         "particles.priors": "gaussian_prior uniform_prior",
+        "particles.ticks": "",
         "particles.resampling": "SCHEMES multinomial residual stratified systematic",
         "particles.roulette": "roulette_wheel",
         "particles.survival": "survival_probability",

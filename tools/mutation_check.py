@@ -61,6 +61,13 @@ MUTATIONS = [
     Mutation(
         "comb-off-by-one",
         "particles.resampling",
+        "np.ceil(edges - u)",
+        "np.floor(edges - u)",
+        "particles/test_resampling",
+    ),
+    Mutation(
+        "ticks-off-by-one",
+        "particles.ticks",
         "edges += ticks - 1 - tooth",
         "edges += 2 * ticks - 1 - tooth",
         "particles/test_resampling",

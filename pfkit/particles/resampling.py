@@ -37,10 +37,12 @@ from pfkit.errors import (
     require_count,
     require_rng,
 )
+from pfkit.particles import ticks
 
 Array = NDArray[np.float64]
 Indices = NDArray[np.int64]
 Resampler = Callable[..., Indices]
+MANY = 5000  # weights from which on whole numbers are faster than floats
 
 
 def _read(w: ArrayLike, rng: np.random.Generator, n: int | None) -> tuple[Array, Array, int]:
@@ -70,36 +72,21 @@ def _unusable(total: Array) -> PfkitError:
     )
 
 
-def _comb(w: Array, total: Array, n: int, u: Array) -> Indices:
+def _comb(w: Array, n: int, u: Array) -> Indices:
     """Ancestors for a comb with one tooth in each of n equal strata, a share u into each.
 
-    Weights become whole numbers of ticks, 2^bits to a stratum: those add exactly, and faster than
-    floats. Nothing is searched. Teeth stand at k ticks + tooth, so an edge has (edge + ticks - 1 -
-    tooth) // ticks of them before it: none before the edge 0 of a particle that has no weight.
-    Reading those counts backwards, tooth k belongs to the first particle with more than k teeth
-    before its edge.
+    An edge of the cumulative weights, measured in strata, has ceil(edge - u) teeth before it. Read
+    backwards, tooth k belongs to the first particle with more than k teeth before its edge.
     """
-    bits = 62 - n.bit_length()
-    ticks = 1 << bits
-    edges = np.empty(w.shape, dtype=np.int64)  # written in place: fresh memory costs more than sums
-    np.multiply(w, n * ticks / total, out=edges, casting="unsafe")
-    np.cumsum(edges, axis=-1, out=edges)
-    tooth = (u * ticks).astype(np.int64)
-    last = tooth[..., -1:]  # rounding must not leave it beyond the last edge
-    np.minimum(last, edges[..., -1:] - (n - 1) * ticks - 1, out=last)
+    if w.size > MANY:
+        return ticks.comb(w, n, u)
+    edges = np.cumsum(w, axis=-1)
+    edges = edges / edges[..., -1:] * n
+    u = np.minimum(u, 1 - 4e-16 * n)  # rounding must not leave a tooth beyond the last edge
     if u.shape[-1] > 1:
-        tooth = np.take_along_axis(tooth, np.minimum(edges >> bits, n - 1), axis=-1)
-    edges += ticks - 1 - tooth
-    below = np.right_shift(edges, bits, out=edges)
-    if below.ndim == 1:
-        counts = np.bincount(below, minlength=n)[:n]
-    else:  # one long ruler for the whole batch, with n + 1 bins for each row
-        rows = np.minimum(below, n).reshape(-1, below.shape[-1])
-        rows += (n + 1) * np.arange(len(rows), dtype=np.int64)[:, None]
-        counts = np.bincount(rows.ravel(), minlength=len(rows) * (n + 1))
-        counts = counts.reshape(*below.shape[:-1], n + 1)[..., :n]
-    counts = counts.astype(np.int64, copy=False)
-    return np.cumsum(counts, axis=-1, out=counts)
+        u = np.take_along_axis(u, np.minimum(edges.astype(np.int64), n - 1), axis=-1)
+    before = np.ceil(edges - u).astype(np.int64)
+    return ticks.owners(before, n)
 
 
 def multinomial(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
@@ -156,8 +143,8 @@ def stratified(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> 
     Source: G. Kitagawa, J. Comp. Graph. Stat. 5 (1996). Its offspring variance never exceeds
     that of multinomial (R. Douc, O. Cappe and E. Moulines, 2005). O(M + n), n random numbers.
     """
-    w, total, n = _read(w, rng, n)
-    return _comb(w, total, n, rng.random((*w.shape[:-1], n)))
+    w, _, n = _read(w, rng, n)
+    return _comb(w, n, rng.random((*w.shape[:-1], n)))
 
 
 def systematic(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
@@ -185,8 +172,8 @@ def systematic(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> 
     Source: Probabilistic Robotics, Table 4.4 (low variance sampler). O(M + n), one random
     number.
     """
-    w, total, n = _read(w, rng, n)
-    return _comb(w, total, n, rng.random((*w.shape[:-1], 1)))
+    w, _, n = _read(w, rng, n)
+    return _comb(w, n, rng.random((*w.shape[:-1], 1)))
 
 
 def residual(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:

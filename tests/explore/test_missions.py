@@ -51,7 +51,7 @@ READERS = [
     ("exact", "exact", 1, 2, (("trust", 3),)),
     ("office", "office", 2, 0, ()),
     ("office", "office", 3, 1, (("K", 2),)),
-    ("office", "office", 2, 2, (("fresh", 5), *KIDNAP)),
+    ("office", "office", 1, 2, (("fresh", 5), *KIDNAP)),
     ("mower", "mower", 1, 0, (200, ("bias", False), ("sigma_r", 1.5))),
     ("mower", "mower", 1, 1, (("keep", 20),)),
     ("mower", "mower", 1, 2, (("start", "anywhere"),)),

@@ -301,3 +301,24 @@ def test_a_batched_truth_loses_its_last_axis():
     truth = np.repeat(LOG.truth[:, :, None, None], 2, axis=2)
     log = pf.Log(LOG.t, LOG.u, LOG.z, truth)
     assert pf.run(log, start((2, 20)), MOTION, SENSOR, rng()).truth.shape == (3, 12, 2)
+
+
+def test_resampling_some_filters_of_a_batch_leaves_the_others_as_they_are():
+    w = rng(0).random((3, 50))
+    bel = pf.from_weights(rng(1).normal(size=(3, 3, 50)), w)
+    where = np.array([True, False, True])
+    some = pf.resample(bel, pf.systematic, rng(2), where=where)
+    np.testing.assert_array_equal(some.state[:, 1], bel.state[:, 1])
+    np.testing.assert_array_equal(some.log_w[1], bel.log_w[1])
+    pair = pf.Particles(bel.state[:, where], bel.log_w[where])
+    alone = pf.resample(pair, pf.systematic, rng(2))
+    np.testing.assert_array_equal(some.state[:, where], alone.state)
+    np.testing.assert_array_equal(some.log_w[where], alone.log_w)
+    assert pf.resample(bel, pf.systematic, rng(2), where=False) is bel
+
+
+def test_filters_side_by_side_keep_one_size():
+    bel = pf.from_weights(np.zeros((3, 2, 5)))
+    with pytest.raises(pf.ParameterError, match="n must be 5, got 7"):
+        pf.resample(bel, pf.systematic, rng(), n=7, where=[True, False])
+    assert pf.resample(bel, pf.systematic, rng(), n=7).M == 7

@@ -7,6 +7,7 @@ from hypothesis import strategies as st
 from hypothesis.extra.numpy import arrays
 
 import pfkit as pf
+from pfkit.particles import resampling, ticks
 
 SKEWED = np.array((0.4, 0.25, 0.15, 0.12, 0.08))
 WEIGHTS = {
@@ -257,3 +258,29 @@ def test_the_wheel_is_biased_for_few_particles():
     copies = many_draws(pf.roulette_wheel, w, 20, runs)
     z = (copies.mean(axis=0) - 20 * w / w.sum()) / (copies.std(axis=0) / np.sqrt(runs))
     assert np.abs(z).max() > 9
+
+
+@pytest.mark.parametrize("M", [1, 2, 7, 100, 1000, 20_000])
+@pytest.mark.parametrize("teeth", ["one offset", "one for each stratum"])
+def test_whole_numbers_and_floats_comb_alike(M, teeth, monkeypatch):
+    """5,000 and more weights go through ticks; they are no other scheme."""
+    random = rng(M)
+    w = random.exponential(size=M) ** 3 * (random.random(M) < 0.7)
+    w[M // 2] += 0.1
+    for n in (M, M + 3, max(M // 2, 1)):
+        u = random.random(1 if teeth == "one offset" else n)
+        monkeypatch.setattr(resampling, "MANY", M)
+        plain = resampling._comb(w, n, u)
+        np.testing.assert_array_equal(plain, ticks.comb(w, n, u))
+        monkeypatch.setattr(resampling, "MANY", M - 1)
+        np.testing.assert_array_equal(resampling._comb(w, n, u), plain)
+
+
+@pytest.mark.parametrize("share", [0.0, 0.5, np.nextafter(1.0, 0.0)])
+@pytest.mark.parametrize("M", [1, 3, 999, 4096, 6000])
+def test_a_tooth_at_either_end_of_its_stratum_finds_a_particle_with_weight(share, M):
+    w = np.concatenate(([0.0], rng(M).exponential(size=M), [0.0]))
+    for n in (1, M, 100_000):
+        for size in (1, n):
+            found = resampling._comb(w, n, np.full(size, share))
+            assert found.min() >= 1 and found.max() <= M and found.size == n
