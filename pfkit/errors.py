@@ -65,8 +65,11 @@ def as_numbers(name: str, value: Any, error: type[PfkitError] = ParameterError) 
 def require_finite(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
     """Return `value` as a float array; raise `error` if it is not numeric and finite."""
     array = as_numbers(name, value, error)
-    if np.count_nonzero(np.isfinite(array)) < array.size:  # counting is faster than all()
-        bad = array[~np.isfinite(array)].flat[0]
+    if math.isfinite(np.vdot(array, array)):  # the fast way; squares of sound numbers may overflow
+        return array
+    bad = array[~np.isfinite(array)]
+    if bad.size:
+        bad = bad.flat[0]
         raise error(f"{name} must be finite, got {bad}; remove or repair that value")
     return array
 
@@ -197,22 +200,6 @@ def require_method(name: str, model: Any, *methods: str) -> None:
                 f"{name} must have a method {method}(...), got {model!r:.60}; "
                 "pass a model object, not its class or a number"
             )
-
-
-def require_instance(name: str, value: Any, kind: type) -> None:
-    """Raise `ParameterError` unless `value` is an object of the class `kind`."""
-    if not isinstance(value, kind):
-        raise ParameterError(
-            f"{name} must be a {kind.__name__}, got {value!r:.60}; build one first"
-        )
-
-
-def require_callable(name: str, value: Any) -> None:
-    """Raise `ParameterError` unless `value` is a function."""
-    if not callable(value):
-        raise ParameterError(
-            f"{name} must be a function, got {value!r:.60}; pass it without calling it"
-        )
 
 
 def require_number(name: str, value: Any, above: float = -math.inf) -> float:

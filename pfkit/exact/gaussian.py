@@ -29,11 +29,8 @@ from pfkit.errors import (
     DataError,
     ParameterError,
     ShapeError,
-    require_callable,
     require_components,
     require_finite,
-    require_instance,
-    require_method,
     require_number,
 )
 from pfkit.exact.kalman import Gaussian, angles_of, condition, wrap_rows
@@ -140,8 +137,6 @@ def gaussian_predict(
     -----
     Source: Probabilistic Robotics, Tables 3.3, 3.4, 7.2 and 7.4, with noise in the control.
     """
-    require_instance("bel", bel, Gaussian)
-    require_method("motion", motion, "sample")
     u, angles = require_finite("u", u), angles_of(bel.mean)
     mean, Sigma, f = _augment(bel, lambda state, rng: motion.sample(state, u, rng))
     y, Y, cross = transform(f, mean, Sigma, angles)
@@ -182,8 +177,6 @@ def gaussian_update(
     -----
     Source: Probabilistic Robotics, Table 7.2, lines 9 to 20.
     """
-    require_instance("bel", bel, Gaussian)
-    require_instance("sensor", sensor, Sensor)
     gate = require_number("gate", gate, above=0.0)
     if how_many(z) == 0:
         return bel, 0.0, 0
@@ -203,7 +196,6 @@ def gaussian_update(
 
 def _moments(f: Function, mean: ArrayLike, Sigma: ArrayLike) -> tuple[Array, Array]:
     """Check what both transforms need."""
-    require_callable("f", f)
     mean, Sigma = require_finite("mean", mean), require_finite("Sigma", Sigma)
     if mean.ndim != 1 or Sigma.shape != (mean.size, mean.size):
         raise ShapeError(f"mean (N,) needs Sigma (N, N), got {mean.shape} and {Sigma.shape}")

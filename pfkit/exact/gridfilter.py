@@ -31,8 +31,6 @@ from pfkit.errors import (
     DegenerateWeightsError,
     require_count,
     require_finite,
-    require_instance,
-    require_method,
     require_rng,
 )
 from pfkit.exact.posegrid import PoseGrid
@@ -160,8 +158,6 @@ def predict_by_transport(
 
 def _check(bel: PoseGrid, u: ArrayLike, motion: MotionModel, rng: np.random.Generator) -> Array:
     """Check what both predictions need; return the control as an array."""
-    require_instance("bel", bel, PoseGrid)
-    require_method("motion", motion, "sample")
     require_rng(rng)
     return require_finite("u", u)
 
@@ -202,8 +198,6 @@ def update_grid(bel: PoseGrid, z: ArrayLike | None, sensor: SensorModel) -> tupl
     ParameterError, ShapeError, DataError
         If an argument is not what it should be.
     """
-    require_instance("bel", bel, PoseGrid)
-    require_method("sensor", sensor, "log_likelihood")
     if how_many(z) == 0:
         return bel, 0.0
     prior = bel.particles()

@@ -29,7 +29,6 @@ from pfkit.errors import (
     ShapeError,
     require_covariance,
     require_finite,
-    require_instance,
     require_number,
 )
 from pfkit.geometry import wrap
@@ -102,7 +101,6 @@ def kalman_predict(
     -----
     Source: Probabilistic Robotics, Table 3.1, lines 2 and 3.
     """
-    require_instance("bel", bel, Gaussian)
     F, shift, D = require_finite("F", F), require_finite("shift", shift), bel.mean.size
     Sigma_u = require_covariance("Sigma_u", Sigma_u, D)
     if F.shape != (D, D) or shift.shape not in ((), (D,)):
@@ -146,7 +144,6 @@ def kalman_update(
     -----
     Source: Probabilistic Robotics, Table 3.1, lines 4 to 6.
     """
-    require_instance("bel", bel, Gaussian)
     gate = require_number("gate", gate, above=0.0)
     z, H = require_finite("z", z), require_finite("H", H)
     n, D = z.size, bel.mean.size

@@ -37,10 +37,9 @@ from pfkit.errors import (
     ShapeError,
     require_count,
     require_finite,
-    require_instance,
 )
 from pfkit.exact.posegrid import PoseGrid
-from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.particle_set import Particles
 
 Array = NDArray[np.float64]
 
@@ -173,8 +172,7 @@ def kl_divergence(bel: Particles, grid: PoseGrid, bins: int = 64) -> Divergence:
     q = p, counting alone makes the log ratios vary by (C_+ - 1) / n; what is left then is the
     variance of a chi-square, the last term.
     """
-    require_instance("grid", grid, PoseGrid)
-    if require_particles(bel).state.shape[0] != 3:
+    if bel.state.shape[0] != 3:
         raise ShapeError(f"the grid holds poses, the particles have {bel.state.shape[0]} rows")
     box = equal_mass_boxes(grid.p, bins).ravel()
     p = _shares(box, grid.p)
@@ -211,8 +209,6 @@ def refinement(coarse: PoseGrid, fine: PoseGrid, bins: int = 64) -> float:
     ShapeError, ParameterError
         If the fine grid is not the coarse one with halved cells.
     """
-    require_instance("coarse", coarse, PoseGrid)
-    require_instance("fine", fine, PoseGrid)
     shape = coarse.p.shape
     if fine.p.shape != tuple(2 * n for n in shape) or fine.bounds != coarse.bounds:
         raise ShapeError(

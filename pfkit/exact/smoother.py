@@ -20,7 +20,6 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import require_instance
 from pfkit.exact.gaussian import Transform, gaussian_predict, gaussian_update, linearise
 from pfkit.exact.kalman import Gaussian, angles_of, wrap_rows
 from pfkit.models.motion import MotionModel
@@ -93,9 +92,6 @@ def run_gaussian(
     ParameterError, ShapeError, DataError
         As `gaussian_predict` and `gaussian_update`.
     """
-    require_instance("log", log, Log)
-    require_instance("bel", bel, Gaussian)
-    require_instance("sensor", sensor, Sensor)
     T, D = len(log), bel.mean.size
     estimate, predicted = np.empty((D, T)), np.empty((D, T))
     spread, predicted_spread, cross = (np.empty((D, D, T)) for _ in range(3))
@@ -142,7 +138,6 @@ def rts_smooth(history: GaussianHistory) -> GaussianHistory:
     Source: H. E. Rauch, F. Tung and C. T. Striebel, AIAA Journal 3 (1965). A state without any
     uncertainty in some direction is handled by the pseudo-inverse: nothing to correct there.
     """
-    require_instance("history", history, GaussianHistory)
     estimate, spread = history.estimate.copy(), history.covariance.copy()
     angles = angles_of(estimate)
     for k in range(len(history.t) - 2, -1, -1):

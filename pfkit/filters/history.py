@@ -23,7 +23,7 @@ from pfkit.filters.particle_filter import Info, step
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel
 from pfkit.particles.estimators import covariance, mean_pose
-from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.particle_set import Particles
 from pfkit.particles.resampling import Resampler, systematic
 from pfkit.particles.triggers import Trigger
 from pfkit.worlds.log import Log
@@ -97,7 +97,6 @@ def run(
     """
     if not isinstance(log, Log):
         raise ParameterError(f"log must be a Log, got {log!r:.60}; build one with pf.Log(t, u, z)")
-    require_particles(bel)
     require_rng(rng)
     T, D, batch = len(log), bel.state.shape[0], bel.log_w.shape[:-1]
     estimate, spread = np.empty((D, T, *batch)), np.empty((D, D, T, *batch))

@@ -37,7 +37,7 @@ from pfkit.errors import (
 from pfkit.filters.particle_filter import Info, predict, select, update
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel, how_many
-from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.particle_set import Particles
 from pfkit.particles.resampling import multinomial
 
 CELL = (0.5, 0.5, math.pi / 18)
@@ -175,7 +175,7 @@ def kld_step(
     drawn in one go and the surplus is dropped; what is saved is the weighing. Without a
     measurement there is nothing to adapt to: the cloud only moves, at its present size.
     """
-    if require_particles(bel).log_w.ndim != 1:
+    if bel.log_w.ndim != 1:
         raise ShapeError("KLD-sampling is for one filter (D, M): in a batch all sizes must agree")
     if how_many(z) == 0:
         moved, ancestors = predict(bel, u, motion, rng), np.arange(bel.M, dtype=np.int64)

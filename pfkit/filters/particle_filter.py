@@ -32,12 +32,11 @@ from pfkit.errors import (
     as_numbers,
     require_count,
     require_finite,
-    require_method,
     require_rng,
 )
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel, how_many
-from pfkit.particles.particle_set import Particles, normalise, require_particles
+from pfkit.particles.particle_set import Particles, normalise
 from pfkit.particles.resampling import Resampler, systematic
 from pfkit.particles.triggers import Trigger, ess_below
 
@@ -89,8 +88,6 @@ def predict(
     -----
     Source: Probabilistic Robotics, Table 4.3, line 4.
     """
-    require_particles(bel)
-    require_method("motion", motion, "sample")
     require_rng(rng)
     state = motion.sample(bel.state, as_numbers("u", u), rng)
     if np.shape(state) != bel.state.shape:
@@ -133,8 +130,6 @@ def update(
     -----
     Source: Probabilistic Robotics, Table 4.3, line 5.
     """
-    require_particles(bel)
-    require_method("sensor", sensor, "log_likelihood")
     if how_many(z) == 0:
         return bel, np.zeros(bel.log_w.shape[:-1])[()]
     log_likelihood = sensor.log_likelihood(as_numbers("z", z, DataError), bel.state)
@@ -165,7 +160,6 @@ def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
     ShapeError, ParameterError
         If the indices are not whole numbers from 0 to M - 1, or not in the belief's batch shape.
     """
-    require_particles(bel)
     ancestors = np.asarray(ancestors)
     if ancestors.ndim != bel.log_w.ndim or ancestors.shape[:-1] != bel.log_w.shape[:-1]:
         raise ShapeError(
@@ -218,8 +212,9 @@ def resample(
     -----
     Source: Probabilistic Robotics, Table 4.3, lines 8 to 11.
     """
-    require_particles(bel)
     n = bel.M if n is None else require_count("n", n)
+    if where is True:
+        return select(bel, _draw(scheme, bel.w, rng, n))
     rows = np.broadcast_to(np.asarray(where, dtype=bool), bel.log_w.shape[:-1])
     if n != bel.M and not rows.all():
         raise ParameterError(f"filters side by side keep one size: n must be {bel.M}, got {n}")

@@ -34,12 +34,9 @@ from pfkit.errors import (
     ParameterError,
     Shape,
     ShapeError,
-    require_callable,
     require_components,
     require_count,
     require_finite,
-    require_instance,
-    require_method,
     require_rng,
     require_shape,
 )
@@ -48,7 +45,7 @@ from pfkit.geometry import wrap
 from pfkit.models.landmark_sensors import RangeBearing
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel, how_many
-from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.particle_set import Particles
 from pfkit.particles.priors import SamplesPoses
 from pfkit.particles.resampling import Resampler, systematic
 
@@ -139,9 +136,7 @@ def inject(
         If the share is not in [0, 1], or not one number or one per filter, or draw does not
         return as many states as there are particles.
     """
-    require_particles(bel)
     require_rng(rng)
-    require_callable("draw", draw)
     share = require_finite("share", share)
     if share.shape not in ((), bel.log_w.shape[:-1]):
         raise ShapeError(f"share must be one number or one per filter, got shape {share.shape}")
@@ -244,19 +239,16 @@ def augmented_step(
     -----
     Source: Probabilistic Robotics, Table 8.3. Like the table it resamples at each measurement.
     """
-    require_instance("memory", memory, Memory)
-    if world is not None:
-        require_method("world", world, "sample_poses")
     K = how_many(z)
+
+    def ring(shape: Shape, rng: np.random.Generator) -> Array:
+        return poses_seeing(z, sensor, shape, rng)  # type: ignore[arg-type]
+
+    draw = ring if world is None else world.sample_poses
     bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold=1.0)
     if K == 0:
         return bel, memory, info
     memory = memory.remember(info.log_evidence, K, alpha_slow, alpha_fast)
-
-    def draw(shape: Shape, rng: np.random.Generator) -> Array:
-        if world is not None:
-            return world.sample_poses(shape, rng)
-        return poses_seeing(z, sensor, shape, rng)  # type: ignore[arg-type]
 
     bel, new = inject(bel, memory.share, draw, rng)
     return bel, memory, info._replace(ancestors=np.where(new, -1, info.ancestors))

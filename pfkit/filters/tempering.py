@@ -33,7 +33,6 @@ from pfkit.errors import (
     as_numbers,
     require_finite,
     require_fraction,
-    require_method,
     require_non_negative_number,
     require_rng,
 )
@@ -41,7 +40,7 @@ from pfkit.filters.particle_filter import select
 from pfkit.geometry import wrap
 from pfkit.models.sensors import SensorModel
 from pfkit.particles.estimators import covariance
-from pfkit.particles.particle_set import Particles, ess, normalise, require_particles
+from pfkit.particles.particle_set import Particles, ess, normalise
 from pfkit.particles.resampling import Resampler, systematic
 
 Array = NDArray[np.float64]
@@ -86,8 +85,6 @@ def tempered_update(
         If an argument is not what it should be, or the measurement is impossible for all
         particles.
     """
-    require_particles(bel)
-    require_method("sensor", sensor, "log_likelihood")
     keep = _require_shares(keep, bel.log_w.shape[:-1])
     require_non_negative_number("kernel", kernel)
     stages = np.zeros(bel.log_w.shape[:-1], dtype=np.int64)

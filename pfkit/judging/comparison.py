@@ -27,7 +27,6 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     ParameterError,
     ShapeError,
-    require_callable,
     require_count,
     require_finite,
     require_number,
@@ -109,7 +108,6 @@ def bootstrap_interval(
     than about 15 runs the interval is too short.
     """
     require_rng(rng)
-    require_callable("statistic", statistic)
     x = _runs(x, 2)
     require_level(level)
     again = x[rng.integers(0, x.size, (require_count("draws", draws), x.size), dtype=np.int64)]
@@ -238,8 +236,6 @@ def compare(
     ParameterError
         If a run is not a function, or there are fewer than two seeds.
     """
-    require_callable("run_a", run_a)
-    require_callable("run_b", run_b)
     seed = require_count("seed", seed, 0)
     streams = np.random.SeedSequence(seed).spawn(require_count("seeds", seeds, 2) + 1)
     a, b = (

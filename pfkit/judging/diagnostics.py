@@ -29,8 +29,6 @@ from pfkit.errors import (
     as_numbers,
     require_components,
     require_finite,
-    require_instance,
-    require_method,
     require_number,
 )
 from pfkit.filters.history import History
@@ -197,8 +195,6 @@ def dead_reckoning(log: Log, motion: MotionModel, start: ArrayLike | None = None
     ParameterError
         If neither the argument nor the log says where the robot started.
     """
-    require_instance("log", log, Log)
-    require_method("motion", motion, "mean")
     if start is None:
         start = log.start
     if start is None:
@@ -229,7 +225,6 @@ def trace(history: History) -> Table:
     ShapeError
         If the history holds a batch.
     """
-    require_instance("history", history, History)
     if history.ess.ndim != 1:
         raise ShapeError(f"trace needs one run, got a batch of {history.ess.shape[1]}; pick one")
     T = len(history.t)

@@ -47,7 +47,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_callable, require_count, require_method
+from pfkit.errors import ParameterError, ShapeError, require_count
 from pfkit.judging.table import Table, from_csv, summarise, tabulate, to_csv
 
 __all__ = ["from_csv", "grid", "one_by_one", "run", "summarise", "to_csv"]
@@ -80,7 +80,6 @@ class one_by_one:
     """
 
     def __init__(self, function: Callable[..., Mapping[str, float]]) -> None:
-        require_callable("function", function)
         self.function = function
 
     def __call__(self, rng: np.random.Generator, B: int, **setting: Any) -> dict[str, list[float]]:
@@ -129,10 +128,7 @@ def run(
     ParameterError, ShapeError
         If there is no setting, keys differ, or a result has not one number per run.
     """
-    require_callable("experiment", experiment)
     settings, seed = _check_settings(settings), require_count("seed", seed, 0)
-    if executor is not None:
-        require_method("executor", executor, "submit")
     runs, block = require_count("runs", runs), require_count("block", block)
     first = range(0, runs, block)
     tasks = [

@@ -26,7 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, ParameterError, ShapeError, as_path, require_instance
+from pfkit.errors import DataError, ParameterError, ShapeError, as_path
 from pfkit.judging.comparison import bootstrap_interval
 
 Table = NDArray[np.void]
@@ -48,7 +48,6 @@ def tabulate(columns: Mapping[str, ArrayLike]) -> Table:
     ParameterError, ShapeError
         If the columns are not a mapping, or they differ in length.
     """
-    require_instance("columns", columns, Mapping)
     arrays = {name: np.asarray(column) for name, column in columns.items()}
     shapes = {array.shape for array in arrays.values()}
     if len(shapes) != 1 or len(min(shapes)) != 1:

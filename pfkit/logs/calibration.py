@@ -27,7 +27,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import DataError, require_finite, require_instance
+from pfkit.errors import DataError, require_finite
 from pfkit.geometry import between, wrap
 from pfkit.logs.odometry import Drift, Odometer
 from pfkit.worlds.log import Log
@@ -164,7 +164,6 @@ def calibrate(log: Log) -> Calibration:
     ParameterError, DataError
         If `log` is not a log, or has no truth to compare with.
     """
-    require_instance("log", log, Log)
     if log.z[log.first_measured()].shape[0] == 3:
         return replace(fit_odometry(log), bearing_bias=fit_bearing_bias(log))
     return Calibration(range_bias=fit_range_bias(log))

@@ -28,8 +28,6 @@ from pfkit.errors import (
     ShapeError,
     require_count,
     require_finite,
-    require_instance,
-    require_method,
     require_rng,
 )
 from pfkit.models.motion import MotionModel
@@ -74,7 +72,6 @@ def drive(
     ShapeError, ParameterError
         If start or u have the wrong shape, or a kidnapping has no step or no world.
     """
-    require_method("motion", motion, "sample")
     require_rng(rng)
     pose = require_finite("start", start)
     if pose.ndim not in (1, 3):
@@ -108,7 +105,6 @@ def _driver(u: ArrayLike | Driver, steps: int | None) -> tuple[Driver, int]:
 
 
 def _kidnap_steps(kidnap: Kidnap | None, steps: int) -> Kidnap:
-    require_instance("kidnap", kidnap or {}, Mapping)
     wrong = [k for k in kidnap or {} if k not in range(steps)]
     if wrong:
         raise ParameterError(f"kidnap at step {wrong[0]}: the drive has steps 0 to {steps - 1}")
@@ -122,7 +118,6 @@ def _carry_off(
     if goal is None:
         if world is None:
             raise ParameterError("kidnap to None needs a world to draw from; name a pose instead")
-        require_method("world", world, "sample_poses")
         return world.sample_poses(shape[1:] or (1,), rng).reshape(shape)
     goal = require_finite("kidnap pose", goal)
     if goal.shape != shape[:1]:

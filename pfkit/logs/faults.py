@@ -25,7 +25,7 @@ from pfkit.errors import (
     require_components,
     require_finite,
     require_fraction,
-    require_instance,
+    require_method,
     require_number,
     require_rng,
 )
@@ -52,7 +52,7 @@ class Sight:
     fov: float = 2 * np.pi
 
     def __post_init__(self) -> None:
-        require_instance("world", self.world, LandmarkMap)
+        require_method("world", self.world, "locate")
         require_number("r_max", self.r_max, above=0.0)
         if not 0 < require_number("fov", self.fov) <= 2 * np.pi + 1e-9:
             raise ParameterError(f"fov must be in (0, 2 pi] radians, got {self.fov}")

@@ -25,7 +25,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, ShapeError, as_path, require_count, require_instance
+from pfkit.errors import DataError, ShapeError, as_path, require_count
 from pfkit.logs.datasets.text import read_table
 from pfkit.worlds.log import Log
 from pfkit.worlds.maps import LandmarkMap
@@ -48,7 +48,6 @@ def save_log(log: Log, folder: str | Path, digits: int = 17) -> None:
     ShapeError
         If the log holds a batch.
     """
-    require_instance("log", log, Log)
     if log.u.ndim != 2:
         raise ShapeError(f"only single drives can be saved, got u {log.u.shape}; pick one run")
     require_count("digits", digits)

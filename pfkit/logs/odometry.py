@@ -32,7 +32,6 @@ from numpy.typing import NDArray
 from pfkit.errors import (
     ShapeError,
     require_components,
-    require_instance,
     require_non_negative,
 )
 from pfkit.geometry import between, compose, wrap
@@ -114,7 +113,6 @@ class Odometer:
     """
 
     def __init__(self, u: Array, drift: Drift) -> None:
-        require_instance("drift", drift, Drift)
         v, omega, dt = require_components("u", u, 3)
         turn = omega * dt
         heading = np.concatenate(([0.0], np.cumsum(turn)))
@@ -199,7 +197,6 @@ def compose_odometry(log: Log, drift: Drift, steps: NDArray[np.int64] | None = N
     -------
     Log with u of shape (12, n) for `ComposedMotion`
     """
-    require_instance("log", log, Log)
     steps = informative_steps(log) if steps is None else steps
     ends = steps + 1
     motion, Sigma = Odometer(log.u, drift).between(np.append(0, ends[:-1]), ends)
@@ -238,7 +235,6 @@ def fill_in(
     ParameterError, ShapeError
         If the estimates, their covariances and their instants do not belong together.
     """
-    require_instance("log", log, Log)
     estimate = require_components("estimate", estimate, 3)
     Sigma, ends = require_components("Sigma", Sigma, 3), np.asarray(ends)
     if ends.dtype.kind not in "iu" or ends.shape != estimate.shape[1:2] or np.any(ends < 0):

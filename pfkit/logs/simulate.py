@@ -30,7 +30,6 @@ from pfkit.errors import (
     ShapeError,
     require_count,
     require_finite,
-    require_method,
     require_positive,
     require_rng,
 )
@@ -76,7 +75,6 @@ def sense(
     ShapeError, ParameterError
         If truth has the wrong shape, or a batch with `sight` has no `Intermittent` sensor.
     """
-    require_method("sensor", sensor, "sample")
     require_rng(rng)
     truth, every = require_finite("truth", truth), require_count("every", every)
     if truth.ndim not in (2, 4):

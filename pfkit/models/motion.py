@@ -105,7 +105,9 @@ def _arc(pose: Array, distance: Array, turn: Array) -> Array:
     """`drive_arc` without the checks, for numbers that have been checked already."""
     x, y, theta = pose
     half = 0.5 * turn
-    safe = half if np.all(half) else np.where(half == 0, 1e-20, half)  # sin(h) / h -> 1
+    safe = (
+        half if np.count_nonzero(half) == half.size else np.where(half == 0, 1e-20, half)
+    )  # sin(h) / h -> 1
     chord = distance * (np.sin(safe) / safe)
     direction = theta + half
     end = np.empty((3, *np.broadcast(x, chord).shape))
@@ -171,7 +173,7 @@ class VelocityMotion:
         pose, u = require_components("pose", pose, 3), require_components("u", u, 3)
         v, omega, dt = u
         var_v, var_omega, var_gamma = self._variances(u)
-        shape = np.broadcast_shapes(pose.shape[1:], u.shape[1:])
+        shape = np.broadcast(pose[0], v).shape
         v_hat = v + draw_noise(var_v, shape, rng)
         omega_hat = omega + draw_noise(var_omega, shape, rng)
         moved = _arc(pose, v_hat * dt, omega_hat * dt)

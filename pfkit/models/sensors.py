@@ -124,9 +124,11 @@ class Sensor:
             If a pose is not finite, or does not have the components that the sensor reads.
         """
         z, pose = self.read(z), self.check_state(pose)
+        if z.shape[1] == 1:
+            return self.log_density(z[:, 0], pose)
         total = np.zeros(pose.shape[1:])
         together = max(1, _CACHE // max(1, total.size)) if self.broadcasts else 1
-        if together == 1 or z.shape[1] == 1:
+        if together == 1:
             for k in range(z.shape[1]):
                 total += self.log_density(z[:, k], pose)
             return total

@@ -28,7 +28,7 @@ from pfkit.errors import (
 )
 from pfkit.geometry import wrap
 from pfkit.particles.estimators import covariance
-from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.particle_set import Particles
 
 Array = NDArray[np.float64]
 BLOCK = 2**20  # kernels evaluated at a time: bounds the memory, not the result
@@ -101,6 +101,6 @@ def kde(bel: Particles, points: ArrayLike, bandwidth: ArrayLike | None = None) -
 
 
 def _single(bel: Particles) -> Particles:
-    if require_particles(bel).log_w.ndim != 1:
+    if bel.log_w.ndim != 1:
         raise ShapeError(f"a density needs one set (D, M), got a batch {bel.log_w.shape}")
     return bel

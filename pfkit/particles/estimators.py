@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError, require_fraction
 from pfkit.geometry import wrap
-from pfkit.particles.particle_set import Particles, normalise, require_particles
+from pfkit.particles.particle_set import Particles, normalise
 
 
 def mean_pose(bel: Particles) -> NDArray[np.float64]:
@@ -42,7 +42,7 @@ def mean_pose(bel: Particles) -> NDArray[np.float64]:
     ParameterError
         If `bel` is not a particle set.
     """
-    w = require_particles(bel).w
+    w = bel.w
     mean = _average(bel.state, w)
     if bel.state.shape[0] >= 3:
         theta = bel.state[2]
@@ -79,7 +79,7 @@ def covariance(bel: Particles) -> NDArray[np.float64]:
 
 def deviation(bel: Particles) -> NDArray[np.float64]:
     """Differences of particles to `mean_pose`, those of headings wrapped: (D, M) or (D, B, M)."""
-    difference = require_particles(bel).state - mean_pose(bel)[..., None]
+    difference = bel.state - mean_pose(bel)[..., None]
     if bel.state.shape[0] >= 3:
         difference[2] = wrap(difference[2])
     return difference
@@ -107,7 +107,7 @@ def map_particle(bel: Particles) -> NDArray[np.float64]:
     ParameterError
         If `bel` is not a particle set.
     """
-    best = require_particles(bel).log_w.argmax(axis=-1)
+    best = bel.log_w.argmax(axis=-1)
     return np.take_along_axis(bel.state, best[None, ..., None], axis=-1)[..., 0]
 
 
@@ -134,7 +134,7 @@ def top_share_mean(bel: Particles, share: float = 0.1) -> NDArray[np.float64]:
     """
     if require_fraction("share", share) == 0:
         raise ParameterError("share must be > 0, got 0; the mean of no particles does not exist")
-    n = int(np.ceil(share * require_particles(bel).M))
+    n = int(np.ceil(share * bel.M))
     top = np.argsort(-bel.log_w, axis=-1, kind="stable")[..., :n]
     state = np.take_along_axis(bel.state, top[None], axis=-1)
     return mean_pose(Particles(state, normalise(np.take_along_axis(bel.log_w, top, axis=-1))[0]))

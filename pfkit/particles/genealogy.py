@@ -29,7 +29,6 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     ParameterError,
     ShapeError,
-    require_callable,
     require_count,
     require_finite,
     require_fraction,
@@ -210,7 +209,6 @@ def offspring_z(
     ParameterError, ShapeError
         If the weights are not one set of finite numbers >= 0, or the scheme is not a function.
     """
-    require_callable("scheme", scheme)
     require_rng(rng)
     w = require_finite("w", w)
     if w.ndim != 1 or w.size == 0:

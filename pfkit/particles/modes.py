@@ -20,7 +20,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import ShapeError, require_positive, whole_cells
 from pfkit.particles.estimators import mean_pose
-from pfkit.particles.particle_set import Particles, normalise, require_particles
+from pfkit.particles.particle_set import Particles, normalise
 
 Array = NDArray[np.float64]
 Cell = tuple[int, ...]
@@ -65,7 +65,7 @@ def clusters(bel: Particles, cell: ArrayLike = (1.0, 1.0, math.pi / 4)) -> Clust
     O(M log M) for sorting particles into cells; then 3^D - 1 neighbours for each occupied cell.
     """
     cell = require_positive("cell", cell)
-    D = len(require_particles(bel).state)
+    D = len(bel.state)
     if bel.log_w.ndim != 1 or cell.shape != (D,):
         raise ShapeError(
             f"clusters need one set (D, M) and one cell size per component, got state "

@@ -25,6 +25,7 @@ independent filters run side by side. Log-weights have the shape without the fir
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -113,15 +114,6 @@ class Particles:
         return f"Particles({shape} of dimension {self.state.shape[0]}, ESS {np.mean(self.ess):.1f})"
 
 
-def require_particles(bel: object) -> Particles:
-    """Return `bel`; raise `ParameterError` unless it is a particle set."""
-    if not isinstance(bel, Particles):
-        raise ParameterError(
-            f"bel must be Particles, got {bel!r:.60}; build them with from_weights(state, w)"
-        )
-    return bel
-
-
 def _log_weights(log_w: ArrayLike) -> NDArray[np.float64]:
     """Log-weights as a float array (..., M); M >= 1."""
     log_w = as_numbers("log_w", log_w)
@@ -165,7 +157,7 @@ def normalise(
     """
     log_w = _log_weights(log_w)
     peak = log_w.max(axis=-1, keepdims=True)
-    if not np.isfinite(peak).all():
+    if not math.isfinite(peak.sum()):
         bad = peak[~np.isfinite(peak)].flat[0]
         if bad != -np.inf:
             raise DegenerateWeightsError(

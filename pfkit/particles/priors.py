@@ -23,7 +23,6 @@ from pfkit.errors import (
     ShapeError,
     require_covariance,
     require_finite,
-    require_method,
     require_rng,
     require_shape,
 )
@@ -63,7 +62,6 @@ def uniform_prior(M: Shape, world: SamplesPoses, rng: np.random.Generator) -> Pa
     Source: Probabilistic Robotics, Table 8.2 and section 8.3.1 (global localisation).
     """
     shape = require_shape("number of particles M", M)
-    require_method("world", world, "sample_poses")
     require_rng(rng)
     return Particles(world.sample_poses(shape, rng), equal_log_weights(shape))
 

@@ -56,8 +56,7 @@ def _read(w: ArrayLike, rng: np.random.Generator, n: int | None) -> tuple[Array,
     if not w.min() >= 0:  # the minimum of a set with a NaN is NaN
         raise ParameterError(f"weights must be >= 0, got {w.min()}; pass w, not log-weights")
     total = w.sum(axis=-1, keepdims=True)
-    usable = (total > 1e-280) & (total < 1e280)
-    if not usable.all():
+    if not (total.min() > 1e-280 and total.max() < 1e280):
         raise _unusable(total)
     return w, total, w.shape[-1] if n is None else require_count("n", n)
 

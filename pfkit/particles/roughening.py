@@ -27,7 +27,7 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import ParameterError, ShapeError, require_non_negative_number, require_rng
 from pfkit.geometry import wrap
 from pfkit.particles.estimators import covariance, deviation
-from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.particle_set import Particles
 
 Array = NDArray[np.float64]
 
@@ -104,7 +104,7 @@ def regularise(bel: Particles, rng: np.random.Generator, where: ArrayLike = True
 
 def _fresh(bel: Particles, where: ArrayLike) -> NDArray[np.bool_]:
     """Which filters of the set to treat, after a check that they were just resampled."""
-    batch = require_particles(bel).log_w.shape[:-1]
+    batch = bel.log_w.shape[:-1]
     chosen = np.asarray(where)
     if chosen.dtype != bool or chosen.shape not in ((), batch):
         raise ShapeError(f"where must be True, False or bool {batch}, got {where!r:.60}")

@@ -33,7 +33,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import require_count, require_fraction, require_non_negative_number
-from pfkit.particles.particle_set import Particles, require_particles
+from pfkit.particles.particle_set import Particles
 
 Trigger = Callable[[Particles, int], "bool | np.bool_ | NDArray[np.bool_]"]
 
@@ -124,6 +124,6 @@ def information(bel: Particles) -> NDArray[np.float64] | np.float64:
     ParameterError
         If `bel` is not a particle set.
     """
-    w = require_particles(bel).w
+    w = bel.w
     gained = np.where(w > 0, w * (np.where(w > 0, bel.log_w, 0.0) + np.log(bel.M)), 0.0)
     return np.maximum(gained.sum(axis=-1), 0.0)

@@ -24,7 +24,6 @@ from pfkit.errors import (
     ShapeError,
     require_components,
     require_finite,
-    require_instance,
     require_number,
 )
 from pfkit.geometry import compose, wrap
@@ -63,7 +62,6 @@ def symmetries(world: LandmarkMap, tolerance: float = 1e-6, mirror: bool = False
     -----
     O(L^4) in the worst case: 40 landmarks take some milliseconds.
     """
-    require_instance("world", world, LandmarkMap)
     require_number("tolerance", tolerance, above=0.0)
     if len(world) < 2:
         raise ParameterError("one landmark has a whole circle of symmetries; need at least two")
@@ -135,7 +133,6 @@ def hypothesis_mass(bel: Particles, poses: ArrayLike, radius: float, angle: floa
         If a pose is not finite, or a radius is not positive.
     """
     poses = require_finite("poses", require_components("poses", poses, 3))
-    require_instance("bel", bel, Particles)
     require_number("radius", radius, above=0.0)
     require_number("angle", angle, above=0.0)
     if poses.ndim not in (2, bel.state.ndim):
