@@ -157,7 +157,6 @@ def test_the_bar_counts_blocks_on_stderr(capsys):
         ({"experiment": lambda rng, B, **s: np.zeros(B)}, pf.ParameterError),
         ({"experiment": lambda rng, B, **s: {}}, pf.ParameterError),
         ({"experiment": study.one_by_one(lambda rng, **s: 1.0)}, pf.ParameterError),
-        ({"executor": "pool"}, pf.ParameterError),
     ],
 )
 def test_bad_input_is_named(change, error):

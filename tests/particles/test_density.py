@@ -70,7 +70,6 @@ def test_blocks_do_not_change_the_result(monkeypatch):
         (lambda b: pf.kde(b, np.zeros((3, 4)), (1, 1, 0)), pf.ParameterError),
         (lambda b: pf.kde(pf.from_weights(np.ones((3, 9))), np.zeros((3, 4))), pf.ParameterError),
         (lambda b: pf.kde(pf.from_weights(np.ones((3, 2, 9))), np.zeros((3, 4))), pf.ShapeError),
-        (lambda b: pf.kde(np.ones((3, 5)), np.zeros((3, 4))), pf.ParameterError),
     ],
 )
 def test_bad_input_is_named(call, error):

@@ -79,6 +79,4 @@ def test_bad_input_is_named(remedy):
     with pytest.raises(pf.ShapeError):
         remedy(bel, rng(), where=np.array([True, False]))
     with pytest.raises(pf.ParameterError):
-        remedy(np.ones((3, 10)), rng())
-    with pytest.raises(pf.ParameterError):
         pf.roughen(bel, rng(), K=-1.0)
