@@ -15,12 +15,12 @@ from typing import Any, NoReturn
 import numpy as np
 
 from pfkit.errors import ParameterError, PfkitError
+from pfkit.judging.diagnostics import dead_reckoning
 from pfkit.judging.localise import (
     Score,
     Track,
     calibrate_first,
     localise,
-    reckon,
     score,
     scored_steps,
     settings_for,
@@ -154,7 +154,7 @@ def _report(log: Log, track: Track, start: str, limit: float) -> None:
 def _print_errors(log: Log, track: Track, limit: float, since: float) -> None:
     print(f"{'':16}{'RMSE [m]':>10}{'median':>9}{'95 %':>9}{'heading RMSE [deg]':>20}")
     if log.start is not None:
-        _row("dead reckoning", score(log, reckon(log), limit, since))
+        _row("dead reckoning", score(log, dead_reckoning(log), limit, since))
     own = score(log, track.estimate[..., 0], limit, since)
     _row("filter", own)
     if np.isfinite(since):
@@ -184,7 +184,7 @@ def draw_track(ax: Any, log: Log, estimate: Any) -> None:
         draw_path(ax, log.truth, "truth")
         window = ax.axis()
         if log.start is not None:
-            draw_path(ax, reckon(log), "dead reckoning", lw=0.8)
+            draw_path(ax, dead_reckoning(log), "dead reckoning", lw=0.8)
         ax.axis(window)  # dead reckoning may leave the picture: that is its message
     draw_path(ax, estimate, "estimate", lw=1.0, label="filter")
     ax.set(xlabel="x [m]", ylabel="y [m]", title=log.source, aspect="equal")

@@ -26,7 +26,7 @@ CORE: dict[str, dict[str, str]] = {
         "particles.priors": "gaussian_prior uniform_prior",
         "particles.ticks": "",
         "particles.resampling": "SCHEMES multinomial residual stratified systematic",
-        "particles.roulette": "roulette_wheel",
+        "particles.resampling_wheel": "resampling_wheel",
         "particles.survival": "survival_probability",
         "particles.genealogy": (
             "Genealogy ancestry coalescence_time count_distinct drift_time founders offspring_z"
@@ -59,10 +59,10 @@ CORE: dict[str, dict[str, str]] = {
         "models.beam_fit": "fit_beams",
         "models.likelihood_field": "LikelihoodField",
         "models.robust": "Gate OutlierMixture Tempered",
-        "models.intermittent": "Intermittent",
+        "models.masked": "Masked",
     },
     "filters": {
-        "filters.particle_filter": "Info predict resample select step update",
+        "filters.particle_filter": "Info predict resample step take update",
         "filters.history": "History run",
         "filters.recovery": "Memory augmented_step inject poses_seeing",
         "filters.kld": "kld_bound kld_count kld_step",
@@ -72,7 +72,7 @@ CORE: dict[str, dict[str, str]] = {
         "exact.histogram": "door_likelihood predict_1d shift_kernel update_1d",
         "exact.posegrid": "PoseGrid gaussian_grid uniform_grid",
         "exact.gridfilter": "predict_by_convolution predict_by_transport update_grid",
-        "exact.oracle": "Divergence equal_mass_boxes kl_divergence refinement",
+        "exact.divergence": "Divergence equal_mass_boxes kl_divergence refinement",
         "exact.kalman": "Gaussian kalman_predict kalman_update",
         "exact.gaussian": "gaussian_predict gaussian_update linearise unscented",
         "exact.smoother": "GaussianHistory rts_smooth run_gaussian",
@@ -82,9 +82,9 @@ CORE: dict[str, dict[str, str]] = {
         "logs.logfile": "read_log save_log",
         "logs.routes": "PurePursuit commands",
         "logs.driving": "drive",
-        "logs.faults": "Outliers Sight",
+        "logs.faults": "Outliers FieldOfView",
         "logs.simulate": "sense simulate_log",
-        "logs.odometry": "ComposedMotion Drift Odometer compose_odometry fill_in",
+        "logs.odometry": "ComposedMotion Drift Preintegrated preintegrate fill_in",
         "logs.calibration": "Calibration calibrate",
     },
     "judging": {
@@ -94,7 +94,7 @@ CORE: dict[str, dict[str, str]] = {
         "judging.table": "summarise tabulate",
         "judging.consistency": "coverage nees nees_band",
         "judging.diagnostics": (
-            "dead_reckoning heading_rmse pose_error position_error rmse settle_time trace"
+            "dead_reckoning heading_rmse pose_error position_error rmse settling_time trace"
         ),
         "judging.study": "",
         "judging.localise": "",

@@ -207,7 +207,7 @@ TABLE: dict[str, Row] = {
             bounds=((0, 1, 0, 1), "bounds"),
         ),
     ),
-    **{name: (getattr(pf, name), scheme) for name in (*pf.SCHEMES, "roulette_wheel")},
+    **{name: (getattr(pf, name), scheme) for name in (*pf.SCHEMES, "resampling_wheel")},
     "survival_probability": (
         pf.survival_probability,
         dict(w=([0.5, 0.5], "one set of weights"), scheme=("systematic", "key"), n=n),
@@ -257,7 +257,7 @@ TABLE: dict[str, Row] = {
     "covariance": (pf.covariance, dict(bel=bel)),
     "predict": (pf.predict, dict(bel=bel, u=u, motion=motion, rng=r)),
     "update": (pf.update, dict(bel=bel, z=z, sensor=sensor)),
-    "select": (pf.select, dict(bel=bel, ancestors=(np.zeros(M, int), "ancestors"))),
+    "take": (pf.take, dict(bel=bel, ancestors=(np.zeros(M, int), "ancestors"))),
     "resample": (
         pf.resample,
         dict(bel=bel, scheme=(pf.systematic, "function"), rng=r, n=n),
@@ -378,7 +378,7 @@ TABLE |= {
     ),
     "Gate": (pf.Gate, dict(sensor=sensor, threshold=(0.1, "non-negative"))),
     "Tempered": (pf.Tempered, dict(sensor=sensor, exponent=half)),
-    "Intermittent": (pf.Intermittent, dict(sensor=sensor)),
+    "Masked": (pf.Masked, dict(sensor=sensor)),
     "MaximumLikelihood": (pf.MaximumLikelihood, dict(sensor=sensor)),
     "BeamModel": (
         pf.BeamModel,
@@ -404,7 +404,7 @@ TABLE |= {
             iterations=n,
         ),
     ),
-    "Sight": (pf.Sight, dict(world=world, r_max=(5.0, "positive or inf"), fov=one)),
+    "FieldOfView": (pf.FieldOfView, dict(world=world, r_max=(5.0, "positive or inf"), fov=one)),
     "Outliers": (pf.Outliers, dict(epsilon=half, low=((0.0,), "angle"), high=((1.0,), "angle"))),
     "map_particle": (pf.map_particle, dict(bel=bel)),
     "top_share_mean": (pf.top_share_mean, dict(bel=bel, share=half)),
@@ -537,8 +537,8 @@ TABLE |= {
     "position_error": (pf.position_error, estimate),
     "rmse": (pf.rmse, estimate),
     "heading_rmse": (pf.heading_rmse, estimate),
-    "settle_time": (
-        pf.settle_time,
+    "settling_time": (
+        pf.settling_time,
         dict(t=(LOG.t, "times"), error=(np.zeros(T), "times"), limit=(1.0, "positive or inf")),
     ),
     "dead_reckoning": (pf.dead_reckoning, dict(log=log, motion=motion, start=pose)),
@@ -588,9 +588,9 @@ TABLE |= {
         ),
     ),
     "Drift": (pf.Drift, dict(drive=((0.1, 0, 0), "alpha3"), turn=((0.1, 0, 0), "alpha3"))),
-    "Odometer": (pf.Odometer, dict(u=(LOG.u, "control"), drift=(NOISE, "particles"))),
+    "Preintegrated": (pf.Preintegrated, dict(u=(LOG.u, "control"), drift=(NOISE, "particles"))),
     "ComposedMotion": (pf.ComposedMotion, {}),
-    "compose_odometry": (pf.compose_odometry, dict(log=log, drift=(NOISE, "particles"))),
+    "preintegrate": (pf.preintegrate, dict(log=log, drift=(NOISE, "particles"))),
     "fill_in": (
         pf.fill_in,
         dict(

@@ -52,7 +52,7 @@ def pack_mower(log: pf.Log) -> dict:
 def pack_stretch(log: pf.Log) -> dict:
     """Ten seconds in which a global start is hard: 39 pictures."""
     i, j = np.searchsorted(log.t, (60.0, 70.0))
-    short = pf.compose_odometry(log[i:j], pf.Drift((0.02, 0, 0), (0.05, 0.05, 0.001)))
+    short = pf.preintegrate(log[i:j], pf.Drift((0.02, 0, 0), (0.05, 0.05, 0.001)))
     return {
         "source": "seconds 60 to 70 of data/mrclam_twin; made by tools/make_excerpts.py",
         "t": short.t.round(3).tolist(),

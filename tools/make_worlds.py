@@ -44,7 +44,7 @@ def landmarks(
         sensor(world, *sigmas),
         np.random.default_rng(list(name.encode())),
         steps=steps,
-        sight=pf.Sight(world, r_max),
+        sight=pf.FieldOfView(world, r_max),
         source=f"{name}: simulated by tools/make_worlds.py",
     )
 

@@ -22,7 +22,7 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.__main__ import draw_track
-from pfkit.judging.localise import DOUBT, calibrate_first, localise, reckon, score, settings_for
+from pfkit.judging.localise import OUTLIER_SHARE, calibrate_first, localise, score, settings_for
 
 ROOT = Path(__file__).resolve().parents[1]
 RESULTS = ROOT / "data" / "results"
@@ -95,7 +95,7 @@ def row(name: str, particles: int, s: Any) -> dict[str, Any]:
 
 def table(log: pf.Log, names: Any = EXPERIMENTS) -> tuple[list[dict[str, Any]], dict, Any]:
     """All rows, the settings by experiment, and the first estimate of the calibrated run."""
-    rows = [row("dead reckoning", 0, score(log, reckon(log), 0.5))]
+    rows = [row("dead reckoning", 0, score(log, pf.dead_reckoning(log), 0.5))]
     notes, drawn = {}, None
     for name in names:
         settings, calibration, estimate, s = measure(log, **EXPERIMENTS[name])
@@ -126,7 +126,7 @@ def main(folder: str | None = None, *names: str) -> None:
         "settings chosen on": "the first third of the log only; calibrations fitted there, too",
         "global start": {
             "weighed in stages while wider than": "0.5 m, the error that counts as found",
-            "share of false measurements": DOUBT,
+            "share of false measurements": OUTLIER_SHARE,
             "chosen on": "variants of the log: other starts, fewer landmarks, false measurements",
         },
         "seed": 0,
@@ -170,7 +170,7 @@ def draw(log: pf.Log, estimate: Any) -> None:
     left.legend().remove()
     left.set(title="the tracks")
     minutes, shown = log.t / 60, slice(None, None, 200)
-    for label, path in (("dead reckoning", reckon(log)), ("filter", estimate)):
+    for label, path in (("dead reckoning", pf.dead_reckoning(log)), ("filter", estimate)):
         look = plotting.KINDS["estimate" if label == "filter" else label]
         off = np.hypot(*(path - log.truth)[:2])
         right.semilogy(

@@ -15,7 +15,7 @@ model, skips empty cells, and leaves some noise.
 
 Either way the answer carries an error of the size of the cells: a step smears by about half a
 cell more than the robot does. Believe a grid only when halving its cells no longer moves the
-answer; `oracle.refinement` says how far it moved.
+answer; `divergence.refinement` says how far it moved.
 """
 
 from __future__ import annotations

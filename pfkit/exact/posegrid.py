@@ -8,7 +8,7 @@ The price is memory and time. A hundred cells each way are a million, and cells 
 are eight times as many. Most of them are empty most of the time, which is the observation that
 particles start from.
 
-`gridfilter` moves and weighs such a belief; `oracle` compares particles with it.
+`gridfilter` moves and weighs such a belief; `divergence` compares particles with it.
 """
 
 from __future__ import annotations

@@ -19,7 +19,7 @@ import numpy as np
 from pfkit.explore.pen import Pen
 from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
 from pfkit.particles.resampling import SCHEMES
-from pfkit.particles.roulette import roulette_wheel
+from pfkit.particles.resampling_wheel import resampling_wheel
 
 LETTERS = "12345"
 COLOURS = tuple(f"particle {k}" for k in LETTERS)
@@ -35,8 +35,8 @@ STRIP = 32  # generations that it shows
 
 
 def wheel(w: np.ndarray, rng: np.random.Generator, n: int) -> np.ndarray:
-    """The wheel of `pf.roulette_wheel`, its picks in the order of the bar."""
-    return np.sort(roulette_wheel(w, rng, n))
+    """The wheel of `pf.resampling_wheel`, its picks in the order of the bar."""
+    return np.sort(resampling_wheel(w, rng, n))
 
 
 FIVE = {**SCHEMES, "wheel": wheel}

@@ -125,7 +125,7 @@ class Drive(Scene):
         elif v["defence"] == "mixture":
             model = pf.OutlierMixture(model, max(v["epsilon"] / 100, 1e-6), self.faults.density)
         self.model = model
-        self.sight = pf.Sight(self.world, v["sight"])
+        self.sight = pf.FieldOfView(self.world, v["sight"])
         alpha = ALPHA * v["noise"] ** 2 / (30 * self.dt)  # the same drift per second at any dt
         self.motion = pf.VelocityMotion(tuple(alpha))
         self.believed = pf.VelocityMotion(tuple(alpha * v["trust"] ** 2))

@@ -64,7 +64,7 @@ CONTROLS = (
     ),
     Control(
         "sight",
-        "Sight",
+        "FieldOfView",
         "range",
         5.0,
         lo=1,

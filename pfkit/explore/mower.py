@@ -43,8 +43,8 @@ def recorded() -> dict[str, Any]:
         start=np.array(raw["start"]),
         world=pf.LandmarkMap(np.array(raw["beacons [m]"]), bounds=BOUNDS),
     )
-    short = pf.compose_odometry(log, DRIFT)
-    blind = pf.compose(log.start[:, None], pf.Odometer(log.u, DRIFT).path[:, 1:])
+    short = pf.preintegrate(log, DRIFT)
+    blind = pf.compose(log.start[:, None], pf.Preintegrated(log.u, DRIFT).path[:, 1:])
     return {"log": short, "blind": blind, "bias": np.array(raw["bias [m]"])}
 
 

@@ -34,7 +34,7 @@ from pfkit.errors import (
     require_rng,
     whole_cells,
 )
-from pfkit.filters.particle_filter import Info, predict, select, update
+from pfkit.filters.particle_filter import Info, predict, take, update
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel, how_many
 from pfkit.particles.particle_set import Particles
@@ -183,7 +183,7 @@ def kld_step(
     require_rng(rng)
     require_count("most", most, require_count("least", least))
     drawn = rng.permutation(multinomial(bel.w, rng, most))
-    moved = predict(select(bel, drawn), u, motion, rng)
+    moved = predict(take(bel, drawn), u, motion, rng)
     n = kld_count(moved.state, cell, epsilon, delta, least)
     ancestors = drawn[:n]
     kept = Particles(moved.state[:, :n], np.full(n, -math.log(n)))

@@ -142,7 +142,7 @@ def update(
     return Particles.trusted(bel.state, log_w), log_evidence
 
 
-def select(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
+def take(bel: Particles, ancestors: NDArray[np.int64]) -> Particles:
     """Copy the named ancestors into a set of equal weights.
 
     Parameters
@@ -214,7 +214,7 @@ def resample(
     """
     n = bel.M if n is None else require_count("n", n)
     if where is True:
-        return select(bel, _draw(scheme, bel.w, rng, n))
+        return take(bel, _draw(scheme, bel.w, rng, n))
     rows = np.broadcast_to(np.asarray(where, dtype=bool), bel.log_w.shape[:-1])
     if n != bel.M and not rows.all():
         raise ParameterError(f"filters side by side keep one size: n must be {bel.M}, got {n}")
@@ -227,13 +227,13 @@ def _resampled(
     """The belief after resampling some filters, and each particle's ancestor: its own elsewhere."""
     if where.all():
         ancestors = _draw(scheme, bel.w, rng, n)
-        return select(bel, ancestors), ancestors
+        return take(bel, ancestors), ancestors
     own = np.broadcast_to(np.arange(n, dtype=np.int64), bel.log_w.shape)
     if not where.any():
         return bel, own
     ancestors = own.copy()
     ancestors[where] = _draw(scheme, bel.w[where], rng, n)
-    copies = select(bel, ancestors)
+    copies = take(bel, ancestors)
     log_w = np.where(where[..., None], copies.log_w, bel.log_w)
     return Particles.trusted(copies.state, log_w), ancestors
 

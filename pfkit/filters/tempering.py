@@ -36,7 +36,7 @@ from pfkit.errors import (
     require_non_negative_number,
     require_rng,
 )
-from pfkit.filters.particle_filter import select
+from pfkit.filters.particle_filter import take
 from pfkit.geometry import wrap
 from pfkit.models.sensors import SensorModel
 from pfkit.particles.estimators import covariance
@@ -131,7 +131,7 @@ def _spread_out(
     """Resample the filters named by `where` and move each copy by the kernel."""
     values, vectors = np.linalg.eigh(np.moveaxis(covariance(bel), (0, 1), (-2, -1)))
     root = vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]
-    moved = select(bel, scheme(bel.w, rng))
+    moved = take(bel, scheme(bel.w, rng))
     noise = kernel * np.einsum("...ij,j...m->i...m", root, rng.standard_normal(bel.state.shape))
     state = moved.state + noise
     state[2] = wrap(state[2])

@@ -9,7 +9,7 @@ The usual summary of a drive is the root of the mean squared position error,
 
 .. math:: \mathrm{RMSE} = \sqrt{\tfrac1T \sum_t (\hat x_t - x_t)^2 + (\hat y_t - y_t)^2} .
 
-It says nothing about when the error was large. `settle_time` does: the moment after which it
+It says nothing about when the error was large. `settling_time` does: the moment after which it
 stays small. And it says nothing without a rival. The cheapest one is `dead_reckoning`: follow
 the odometer, ignore every measurement. A filter that does not beat it does not work.
 
@@ -34,10 +34,11 @@ from pfkit.errors import (
 from pfkit.filters.history import History
 from pfkit.geometry import wrap
 from pfkit.judging.table import Table, tabulate
-from pfkit.models.motion import MotionModel
+from pfkit.models.motion import MotionModel, VelocityMotion
 from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
+ARC = VelocityMotion()
 
 
 def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
@@ -148,7 +149,7 @@ def _root_mean_square(error: Array) -> Array | np.float64:
     return np.sqrt(np.sum(np.where(known, error, 0.0) ** 2, axis=0) / steps)
 
 
-def settle_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.float64:
+def settling_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.float64:
     """The first time after which the error stays below a limit, to the end of the log.
 
     Parameters
@@ -174,7 +175,7 @@ def settle_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.floa
     return np.append(t, np.inf)[len(t) - late]
 
 
-def dead_reckoning(log: Log, motion: MotionModel, start: ArrayLike | None = None) -> Array:
+def dead_reckoning(log: Log, motion: MotionModel = ARC, start: ArrayLike | None = None) -> Array:
     r"""Follow the controls without noise and without measurements.
 
     .. math:: \hat x_t = E[x_t \mid u_t, \hat x_{t-1}]
@@ -183,6 +184,7 @@ def dead_reckoning(log: Log, motion: MotionModel, start: ArrayLike | None = None
     ----------
     log : Log
     motion : MotionModel
+        The arcs of u = (v, omega, dt) if left out.
     start : array_like (D,) or (D, B, 1), optional
         The pose before the first control; the log's own start if left out.
 

@@ -36,16 +36,14 @@ from numpy.typing import NDArray
 from pfkit.errors import DataError, ParameterError, require_count
 from pfkit.filters.particle_filter import predict, resample, update
 from pfkit.filters.tempering import tempered_update
-from pfkit.geometry import compose
-from pfkit.judging.diagnostics import pose_error, settle_time
+from pfkit.judging.diagnostics import pose_error, settling_time
 from pfkit.logs.calibration import Calibration, calibrate
 from pfkit.logs.odometry import (
     ComposedMotion,
     Drift,
-    Odometer,
-    compose_odometry,
     fill_in,
     informative_steps,
+    preintegrate,
 )
 from pfkit.models.landmark_sensors import Range, RangeBearing
 from pfkit.models.robust import OutlierMixture
@@ -59,7 +57,7 @@ from pfkit.worlds.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 Watch = Callable[[int, int], object]
-DOUBT = 0.001  # of the measurements of a global start: may come from anywhere
+OUTLIER_SHARE = 0.001  # of the measurements of a global start: may come from anywhere
 
 
 @dataclass(frozen=True)
@@ -184,24 +182,24 @@ def localise(
     else:
         bel = uniform_prior(shape, log.world, rng)
     steps = np.arange(len(log)) if every_row else informative_steps(log)
-    short = compose_odometry(log, settings.drift, steps)
+    short = preintegrate(log, settings.drift, steps)
     first = float(log.t[log.first_measured()])
     began = time.perf_counter()
     sensor, staged = settings.sensor, np.inf
     if start == "global" and not plain:
-        sensor, staged = _doubtful(sensor, log.world), settings.limit
+        sensor, staged = _with_outliers(sensor, log.world), settings.limit
     estimate, Sigma = _filter(short, bel, sensor, rng, staged, watch)
     seconds = time.perf_counter() - began
     estimate, sd = fill_in(log, settings.drift, np.append(0, steps + 1), estimate, Sigma)
     return Track(estimate, sd, first, seconds)
 
 
-def _doubtful(sensor: Sensor, world: LandmarkMap) -> Sensor:
+def _with_outliers(sensor: Sensor, world: LandmarkMap) -> Sensor:
     """The sensor, but a share of its measurements comes from anywhere on the map."""
     x0, x1, y0, y1 = world.bounds
     farthest = np.hypot(x1 - x0, y1 - y0)
     circle = 2 * np.pi if sensor.components == 3 else 1.0  # range alone has no bearing
-    return OutlierMixture(sensor, DOUBT, 1 / (circle * farthest))
+    return OutlierMixture(sensor, OUTLIER_SHARE, 1 / (circle * farthest))
 
 
 def _filter(
@@ -287,12 +285,5 @@ def score(log: Log, estimate: Array, limit: float, since: float = -np.inf) -> Sc
         np.median(distance[late], axis=0),
         np.percentile(distance[late], 95, axis=0),
         np.sqrt(np.mean(error[2][late] ** 2, axis=0)),
-        np.asarray(settle_time(log.t[known], distance, limit)),
+        np.asarray(settling_time(log.t[known], distance, limit)),
     )
-
-
-def reckon(log: Log) -> Array:
-    """Dead reckoning from the log's start along u = (v, omega, dt): (3, T)."""
-    if log.start is None:
-        raise DataError("the log does not know where it starts: no dead reckoning")
-    return compose(log.start[:, None], Odometer(log.u, Drift()).path[:, 1:])

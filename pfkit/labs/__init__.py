@@ -80,7 +80,7 @@ axis is the runs. Declare claim, test, runs, false-fail probability (at most 1e-
 and margin; `pfkit.labs.replay` verifies them on a ``pool`` of runs. ``after`` is the prediction
 that must be locked first::
 
-    @experiment('''Bias of the roulette wheel
+    @experiment('''Bias of the resampling wheel
         ...three hints...''', after=sign, runs=200, claim="the wheel is unbiased",
         test="|mean| < 4 standard errors", margin="4 SE, normal: 6e-5")
     def bias_x(rng):

@@ -29,7 +29,7 @@ from numpy.typing import NDArray
 
 from pfkit.errors import DataError, require_finite
 from pfkit.geometry import between, wrap
-from pfkit.logs.odometry import Drift, Odometer
+from pfkit.logs.odometry import Drift, Preintegrated
 from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
@@ -100,7 +100,7 @@ def fit_odometry(log: Log) -> Calibration:
     truth = between(log.truth[:, i], log.truth[:, j])  # type: ignore[index]
 
     def error(parameters: Array) -> Array:
-        motion, _ = Odometer(_corrected(log, *parameters), Drift()).between(i + 1, j + 1)
+        motion, _ = Preintegrated(_corrected(log, *parameters), Drift()).between(i + 1, j + 1)
         x, y, theta = truth - motion
         return np.stack((x, y, ARM * wrap(theta)))
 

@@ -1,6 +1,6 @@
 r"""Faults: what a simulated robot does not see, and what it sees wrongly.
 
-A landmark is measured only when it is near enough and in front of the robot (`Sight`). A
+A landmark is measured only when it is near enough and in front of the robot (`FieldOfView`). A
 measurement may be false: a reflection, somebody's leg, a wrong bar code. `Outliers` replaces
 honest measurements by draws that know nothing of the pose, and keeps the labels. With labels a
 detector of outliers can be scored; on real data nobody knows them.
@@ -36,7 +36,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Sight:
+class FieldOfView:
     """Which landmarks a robot can see: near enough, and in front of it.
 
     Parameters

@@ -82,7 +82,7 @@ class ComposedMotion:
     .. math:: x_t = x_{t-1} \oplus (u_{1:3} + L\,\xi), \qquad \xi \sim \mathcal N(0, I)
 
     L is a square root of the error's covariance, three by three, its rows one after another
-    in u[3:12]. `compose_odometry` makes such controls.
+    in u[3:12]. `preintegrate` makes such controls.
     """
 
     def mean(self, pose: Array, u: Array) -> Array:
@@ -99,7 +99,7 @@ class ComposedMotion:
         return compose(pose, u[:3][column] + error)
 
 
-class Odometer:
+class Preintegrated:
     """The odometry of a log, integrated once; gives the motion between any two instants.
 
     Parameters
@@ -182,7 +182,7 @@ def informative_steps(log: Log) -> NDArray[np.int64]:
     return np.flatnonzero(measured)
 
 
-def compose_odometry(log: Log, drift: Drift, steps: NDArray[np.int64] | None = None) -> Log:
+def preintegrate(log: Log, drift: Drift, steps: NDArray[np.int64] | None = None) -> Log:
     """Keep some of a log's steps; one motion leads from each to the next.
 
     Parameters
@@ -199,7 +199,7 @@ def compose_odometry(log: Log, drift: Drift, steps: NDArray[np.int64] | None = N
     """
     steps = informative_steps(log) if steps is None else steps
     ends = steps + 1
-    motion, Sigma = Odometer(log.u, drift).between(np.append(0, ends[:-1]), ends)
+    motion, Sigma = Preintegrated(log.u, drift).between(np.append(0, ends[:-1]), ends)
     return replace(
         log,
         t=log.t[steps],
@@ -246,7 +246,7 @@ def fill_in(
         raise ShapeError(f"Sigma must be {(3, *estimate.shape)}, got {Sigma.shape}")
     now = np.arange(1, len(log) + 1)
     latest = np.searchsorted(ends, now, side="right") - 1
-    motion, grown = Odometer(log.u, drift).between(ends[latest], now)
+    motion, grown = Preintegrated(log.u, drift).between(ends[latest], now)
     batch = (..., *(None,) * (estimate.ndim - 2))
     pose, before = estimate[:, latest], Sigma[:, :, latest]
     moved = compose(pose, motion[batch])

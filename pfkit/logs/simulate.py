@@ -5,7 +5,7 @@ A simulated log comes from the same two densities that the filter assumes,
 .. math:: x_t \sim p(x_t \mid u_t, x_{t-1}), \qquad z_t \sim p(z_t \mid x_t) ,
 
 so that a filter with these models has no excuse. Then we take the excuses away one by one:
-simulate with one model and filter with another, hide landmarks (`Sight`), spoil measurements
+simulate with one model and filter with another, hide landmarks (`FieldOfView`), spoil measurements
 with known labels (`Outliers`), or carry the robot off (``kidnap``).
 
 `drive` makes the truth, `sense` the measurements along it, `simulate_log` both. Each draws
@@ -35,7 +35,7 @@ from pfkit.errors import (
 )
 from pfkit.logs.driving import Driver, Kidnap, drive
 from pfkit.logs.faults import Outliers
-from pfkit.models.intermittent import Intermittent
+from pfkit.models.masked import Masked
 from pfkit.models.motion import MotionModel
 from pfkit.models.odometry_motion import OdometryMotion
 from pfkit.worlds.log import Log
@@ -62,7 +62,7 @@ def sense(
     every : int >= 1
         Measure at every such step, the first time at step ``every - 1``; else K = 0.
     sight : function of poses (D, ...) to bool (K, ...), optional
-        Which columns are measured, such as `Sight`. A batch needs an `Intermittent` sensor.
+        Which columns are measured, such as `FieldOfView`. A batch needs an `Masked` sensor.
     outliers : Outliers, optional
 
     Returns
@@ -73,14 +73,14 @@ def sense(
     Raises
     ------
     ShapeError, ParameterError
-        If truth has the wrong shape, or a batch with `sight` has no `Intermittent` sensor.
+        If truth has the wrong shape, or a batch with `sight` has no `Masked` sensor.
     """
     require_rng(rng)
     truth, every = require_finite("truth", truth), require_count("every", every)
     if truth.ndim not in (2, 4):
         raise ShapeError(f"truth must be (D, T), or (D, T, B, 1) for a batch, got {truth.shape}")
-    if sight is not None and truth.ndim == 4 and not isinstance(sensor, Intermittent):
-        raise ParameterError("robots of a batch see different landmarks; use Intermittent(sensor)")
+    if sight is not None and truth.ndim == 4 and not isinstance(sensor, Masked):
+        raise ParameterError("robots of a batch see different landmarks; use Masked(sensor)")
     z, false = [], []
     for k in range(truth.shape[1]):
         pose = truth[:, k]
@@ -177,7 +177,7 @@ def _look(sensor: Any, pose: Array, sight: Callable | None, rng: np.random.Gener
     if sight is None:
         return z
     seen = sight(pose)
-    if isinstance(sensor, Intermittent):
+    if isinstance(sensor, Masked):
         z[-1] = seen
         return z
     return z[:, seen]

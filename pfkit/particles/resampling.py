@@ -18,7 +18,7 @@ step with the comb is sampled badly.
 
 Each scheme is a plain function ``scheme(w, rng, n=None)`` that returns ancestor indices
 (int64). Weights may be ``(M,)`` or a batch ``(B, M)``; the result is ``(n,)`` or ``(B, n)``.
-`SCHEMES` names the four. A fifth, `roulette_wheel`, is kept as a specimen in a module of its own.
+`SCHEMES` names the four. A fifth, `resampling_wheel`, is kept as a specimen in a module of its own.
 """
 
 from __future__ import annotations
@@ -57,11 +57,11 @@ def _read(w: ArrayLike, rng: np.random.Generator, n: int | None) -> tuple[Array,
         raise ParameterError(f"weights must be >= 0, got {w.min()}; pass w, not log-weights")
     total = w.sum(axis=-1, keepdims=True)
     if not (total.min() > 1e-280 and total.max() < 1e280):
-        raise _unusable(total)
+        raise _weight_error(total)
     return w, total, w.shape[-1] if n is None else require_count("n", n)
 
 
-def _unusable(total: Array) -> PfkitError:
+def _weight_error(total: Array) -> PfkitError:
     """What is wrong with sums of weights that cannot be scaled to one."""
     if not (total > 0).all():
         return DegenerateWeightsError("all weights are 0: nothing to copy; check the likelihood")

@@ -136,9 +136,7 @@ def test_nothing_measured_changes_nothing():
         assert result == (START, 0.0, 0)
 
 
-@pytest.mark.parametrize(
-    "wrap", [pf.Intermittent, pf.MaximumLikelihood, lambda s: pf.Tempered(s, 0.5)]
-)
+@pytest.mark.parametrize("wrap", [pf.Masked, pf.MaximumLikelihood, lambda s: pf.Tempered(s, 0.5)])
 def test_a_wrapper_has_no_gaussian_of_its_own(wrap):
     """Nor may it be read as the sensor that it wraps: its columns name no landmark."""
     sensor = wrap(pf.RangeBearing(WORLD, 0.3, 0.1))

@@ -136,7 +136,7 @@ def test_the_order_of_measurements_does_not_matter():
 # --- batches and seeds -----------------------------------------------------------------------
 
 
-@pytest.mark.parametrize("scheme", [*pf.SCHEMES.values(), pf.roulette_wheel])
+@pytest.mark.parametrize("scheme", [*pf.SCHEMES.values(), pf.resampling_wheel])
 def test_a_batch_of_one_is_a_single_run_bit_for_bit(scheme):
     single = pf.run(LOG, start(300), MOTION, SENSOR, rng(5), scheme, threshold=0.7)
     batch = pf.run(LOG, start((1, 300)), MOTION, SENSOR, rng(5), scheme, threshold=0.7)
@@ -241,7 +241,7 @@ def test_resample_copies_and_forgets_the_weights():
     assert after.M == 8 and after.ess == pytest.approx(8)
     np.testing.assert_array_equal(after.state, bel.state[:, [1, 1, 3, 3, 3, 3, 3, 3]])
     batch = pf.from_weights(start((2, 4)).state, [[0, 1, 0, 3], [1, 0, 0, 0]])
-    after = pf.select(batch, np.array([[3, 1], [0, 0]]))
+    after = pf.take(batch, np.array([[3, 1], [0, 0]]))
     np.testing.assert_array_equal(after.state[:, 0], batch.state[:, 0, [3, 1]])
     np.testing.assert_array_equal(after.state[:, 1], batch.state[:, 1, [0, 0]])
 
@@ -277,9 +277,9 @@ def test_careless_parts_are_named():
         pf.resample(bel, lambda w, generator, n: w, rng())
     for wrong in (np.full(5, 5), np.full(5, -1)):
         with pytest.raises(pf.ParameterError, match="0 to 4"):
-            pf.select(bel, wrong)
+            pf.take(bel, wrong)
     with pytest.raises(pf.ShapeError, match=r"ancestors must have shape"):
-        pf.select(bel, np.zeros((2, 3), int))
+        pf.take(bel, np.zeros((2, 3), int))
 
 
 def test_a_run_keeps_what_the_filter_said():

@@ -91,10 +91,10 @@ def test_steps_without_a_truth_are_not_scored():
 def test_settle_time_is_the_start_of_the_good_ending():
     t = np.arange(1.0, 7.0)
     error = np.array([9, 0.1, 9, 0.1, 0.2, 0.3])
-    assert pf.settle_time(t, error, 0.5) == 4.0
-    assert pf.settle_time(t, error, 0.25) == np.inf
-    assert pf.settle_time(t, np.zeros(6), 0.5) == 1.0
-    both = pf.settle_time(t, np.stack((error, np.zeros(6)), axis=1), 0.5)
+    assert pf.settling_time(t, error, 0.5) == 4.0
+    assert pf.settling_time(t, error, 0.25) == np.inf
+    assert pf.settling_time(t, np.zeros(6), 0.5) == 1.0
+    both = pf.settling_time(t, np.stack((error, np.zeros(6)), axis=1), 0.5)
     np.testing.assert_array_equal(both, [4.0, 1.0])
 
 
@@ -140,9 +140,9 @@ def test_what_cannot_be_tabulated_or_timed_is_named():
     with pytest.raises(pf.ShapeError, match="one run"):
         pf.trace(pf.run(log, bel, pf.VelocityMotion(), sensor, rng()))
     with pytest.raises(pf.ShapeError, match="one row per time"):
-        pf.settle_time(np.arange(3), np.zeros(4), 1.0)
+        pf.settling_time(np.arange(3), np.zeros(4), 1.0)
     with pytest.raises(pf.ParameterError, match="limit"):
-        pf.settle_time(np.arange(3), np.zeros(3), 0.0)
+        pf.settling_time(np.arange(3), np.zeros(3), 0.0)
 
 
 def test_trace_without_a_truth_has_no_error():

@@ -1,4 +1,4 @@
-"""Sight and outliers: what is hidden, what is false, and how it is labelled."""
+"""FieldOfView and outliers: what is hidden, what is false, and how it is labelled."""
 
 import math
 
@@ -28,9 +28,9 @@ def residuals(log, sensor=SENSOR):
 
 
 def test_sight_by_range_and_by_field_of_view():
-    near = pf.Sight(WORLD, r_max=4.0)
+    near = pf.FieldOfView(WORLD, r_max=4.0)
     np.testing.assert_array_equal(near(np.array([3.0, 2.0, 0.0])), [True, True, False])
-    ahead = pf.Sight(WORLD, fov=np.pi)
+    ahead = pf.FieldOfView(WORLD, fov=np.pi)
     np.testing.assert_array_equal(ahead(np.array([3.0, 2.0, 0.0])), [False, True, True])
     np.testing.assert_array_equal(ahead(np.array([3.0, 2.0, np.pi])), [True, False, False])
     poses = rng().uniform(-3, 3, size=(3, 7, 1))
@@ -38,7 +38,7 @@ def test_sight_by_range_and_by_field_of_view():
 
 
 def test_only_seen_landmarks_are_measured():
-    sight = pf.Sight(WORLD, r_max=4.0, fov=np.pi)
+    sight = pf.FieldOfView(WORLD, r_max=4.0, fov=np.pi)
     log = pf.simulate_log(START, TURN, NOISY, SENSOR, rng(), sight=sight)
     assert {z.shape[1] for z in log.z} != {3}
     for _, _, z, truth in log:
@@ -78,8 +78,8 @@ def test_a_batch_has_labels_of_its_own():
 
 def test_bad_parts_are_named():
     with pytest.raises(pf.ParameterError, match="r_max"):
-        pf.Sight(WORLD, r_max=0)
+        pf.FieldOfView(WORLD, r_max=0)
     with pytest.raises(pf.ParameterError, match="fov"):
-        pf.Sight(WORLD, fov=7)
+        pf.FieldOfView(WORLD, fov=7)
     with pytest.raises(pf.ParameterError, match="low"):
         pf.Outliers(0.1, (1.0,), (0.0,))

@@ -17,7 +17,7 @@ def make_log(**more):
         MOTION,
         SENSOR,
         np.random.default_rng(2),
-        sight=pf.Sight(worlds.arena(), r_max=5.0),
+        sight=pf.FieldOfView(worlds.arena(), r_max=5.0),
         source="a test",
         **more,
     )

@@ -33,7 +33,7 @@ def rowwise(log, drift, M, seed):
 
 def test_composed_means_are_those_of_the_exact_arcs():
     log = some_log()
-    short = pf.compose_odometry(log, DRIFT)
+    short = pf.preintegrate(log, DRIFT)
     long = [log.start]
     for u in log.u.T:
         long.append(pf.VelocityMotion().mean(long[-1], u))
@@ -46,14 +46,14 @@ def test_composed_means_are_those_of_the_exact_arcs():
 def test_only_informative_steps_and_the_last_are_kept():
     log = some_log(T=210)
     assert informative_steps(log).tolist() == [39, 79, 119, 159, 199, 209]
-    short = pf.compose_odometry(log, DRIFT)
+    short = pf.preintegrate(log, DRIFT)
     assert [zk.shape[1] for zk in short.z] == [1, 1, 1, 1, 1, 0]
 
 
 def test_composed_covariance_agrees_with_small_steps():
     small = pf.Drift(*(tuple(0.01 * np.array(d)) for d in (DRIFT.drive, DRIFT.turn)))
     log, M = some_log(), 40_000
-    motion, Sigma = pf.Odometer(log.u, small).between(np.array([0]), np.array([len(log)]))
+    motion, Sigma = pf.Preintegrated(log.u, small).between(np.array([0]), np.array([len(log)]))
     x = rowwise(log, small, M, seed=5)
     error = pf.between(motion, x)
     error[:2] = x[:2] - motion[:2]
@@ -66,7 +66,7 @@ def test_composed_covariance_agrees_with_small_steps():
 
 def test_pieces_add_up_to_the_whole():
     log = some_log()
-    odometer = pf.Odometer(log.u, DRIFT)
+    odometer = pf.Preintegrated(log.u, DRIFT)
     i, j, k = np.array([10]), np.array([90]), np.array([180])
     whole, Sigma = odometer.between(i, k)
     first, A = odometer.between(i, j)
@@ -80,7 +80,7 @@ def test_pieces_add_up_to_the_whole():
 
 
 def test_samples_have_the_composed_covariance():
-    short = pf.compose_odometry(some_log(), DRIFT)
+    short = pf.preintegrate(some_log(), DRIFT)
     u, M = short.u[:, 1], 50_000
     L = u[3:].reshape(3, 3)
     x = pf.ComposedMotion().sample(np.zeros((3, M)), u, np.random.default_rng(2))
@@ -90,7 +90,7 @@ def test_samples_have_the_composed_covariance():
 
 
 def test_a_batch_may_have_a_motion_for_each_filter():
-    short = pf.compose_odometry(some_log(), DRIFT)
+    short = pf.preintegrate(some_log(), DRIFT)
     pose = np.zeros((3, 2, 400))
     u = short.u[:, :2, None]
     both = pf.ComposedMotion().sample(pose, u, np.random.default_rng(3))
@@ -102,7 +102,7 @@ def test_a_batch_may_have_a_motion_for_each_filter():
 
 def test_a_robot_that_stands_still_without_noise_stays():
     log = pf.Log(np.arange(3.0), np.zeros((3, 3)), [np.zeros((3, 0))] * 3)
-    short = pf.compose_odometry(log, DRIFT)
+    short = pf.preintegrate(log, DRIFT)
     x = pf.ComposedMotion().sample(np.ones((3, 5)), short.u[:, 0], np.random.default_rng(0))
     np.testing.assert_allclose(x, 1.0)
 
@@ -110,7 +110,7 @@ def test_a_robot_that_stands_still_without_noise_stays():
 def test_filling_in_hits_the_estimates_and_follows_the_odometry():
     log = some_log()
     ends = np.append(0, informative_steps(log) + 1)
-    path = pf.compose(log.start[:, None], pf.Odometer(log.u, DRIFT).path)
+    path = pf.compose(log.start[:, None], pf.Preintegrated(log.u, DRIFT).path)
     estimate = path[:, ends, None] * np.ones(4)
     full, sd = pf.fill_in(log, DRIFT, ends, estimate, np.zeros((3, 3, len(ends), 4)))
     assert full.shape == (3, 200, 4) and sd.shape == (200, 4)
@@ -125,7 +125,7 @@ def test_filled_in_spread_is_that_of_the_particles():
     bel = pf.gaussian_prior(M, log.start, (0.3, 0.2, 0.1), rng)
     prior = pf.covariance(bel)[..., None]
     _, sd = pf.fill_in(log, DRIFT, np.array([0]), pf.mean_pose(bel)[:, None], prior)
-    small = pf.compose_odometry(log, DRIFT)
+    small = pf.preintegrate(log, DRIFT)
     moved = pf.predict(bel, small.u[:, 0], pf.ComposedMotion(), rng)
     Sigma = pf.covariance(moved)
     assert sd[-1] == pytest.approx(np.sqrt(Sigma[0, 0] + Sigma[1, 1]), rel=0.03)

@@ -17,7 +17,7 @@ WEIGHTS = {
     "one holds nearly all": np.array((1e-9, 1.0, 1e-9, 1e-3)),
     "many": np.random.default_rng(5).exponential(size=40),
 }
-ALL = {**pf.SCHEMES, "roulette_wheel": pf.roulette_wheel}
+ALL = {**pf.SCHEMES, "resampling_wheel": pf.resampling_wheel}
 weight_sets = arrays(
     float,
     st.integers(1, 30),
@@ -153,7 +153,7 @@ def test_properties_of_any_weights(w, seed, n):
         ancestors = scheme(w, rng(seed), n)
         assert ancestors.shape == (n,) and ancestors.dtype == np.int64
         assert (w[ancestors] > 0).all(), f"{name} copied a particle without weight"
-        if name != "roulette_wheel":
+        if name != "resampling_wheel":
             assert (np.diff(ancestors) >= 0).all()
 
 
@@ -249,13 +249,13 @@ def test_the_wheel_is_the_loop_it_is_taught_as(weights):
     w = WEIGHTS[weights]
     for seed in range(20):
         expected = wheel_by_hand(w, rng(seed), 9)
-        np.testing.assert_array_equal(pf.roulette_wheel(w, rng(seed), 9), expected)
+        np.testing.assert_array_equal(pf.resampling_wheel(w, rng(seed), 9), expected)
 
 
 def test_the_wheel_is_biased_for_few_particles():
     """Its start ignores the weights; an honest scheme stays within 4.5 standard errors."""
     w, runs = np.linspace(1.0, 0.01, 20), 20_000
-    copies = many_draws(pf.roulette_wheel, w, 20, runs)
+    copies = many_draws(pf.resampling_wheel, w, 20, runs)
     z = (copies.mean(axis=0) - 20 * w / w.sum()) / (copies.std(axis=0) / np.sqrt(runs))
     assert np.abs(z).max() > 9
 

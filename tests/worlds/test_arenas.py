@@ -46,7 +46,7 @@ def test_the_fifth_landmark_comes_into_view_late():
     driver = pf.PurePursuit(worlds.BROKEN_SQUARE_ROUTE, v=1.0, dt=0.25, closed=False)
     start = worlds.BROKEN_SQUARE_START
     _, truth = pf.drive(start, driver, STILL, np.random.default_rng(), steps=250)
-    seen = pf.Sight(worlds.broken_square(), r_max=6.0)(truth)  # (K, T)
+    seen = pf.FieldOfView(worlds.broken_square(), r_max=6.0)(truth)  # (K, T)
     first = np.argmax(seen[4])
     assert seen[4].any() and first > 0.8 * 230
     assert seen[:4].any(axis=0)[:first].mean() > 0.5  # until then the square is often in view

@@ -1,4 +1,4 @@
-r"""The roulette wheel: a resampling scheme to look at, not to use.
+r"""The resampling wheel: a resampling scheme to look at, not to use.
 
 Udacity's course CS373 taught robot localisation to more people than any book, with a resampling
 wheel of seven lines that everybody remembers. Draw the particles as slices of a wheel, start at
@@ -24,7 +24,7 @@ from numpy.typing import ArrayLike
 from pfkit.particles.resampling import Indices, _find, _read
 
 
-def roulette_wheel(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
+def resampling_wheel(w: ArrayLike, rng: np.random.Generator, n: int | None = None) -> Indices:
     r"""The resampling wheel of a famous first course: a specimen, not a recommendation.
 
     Start at the edge of a particle that is chosen *uniformly*, then walk round the wheel in n

@@ -17,7 +17,7 @@ def rng(seed=0):
 
 
 def test_intermittent_columns_say_nothing_when_unseen():
-    sensor = pf.Intermittent(SENSOR)
+    sensor = pf.Masked(SENSOR)
     pose = rng().uniform(-3, 3, size=(3, 50))
     z = sensor.sample(START, rng())
     z[-1] = [1, 0, 1]
@@ -27,9 +27,9 @@ def test_intermittent_columns_say_nothing_when_unseen():
 
 
 def test_a_batch_with_sight_marks_what_each_robot_sees():
-    sight, sensor = pf.Sight(WORLD, r_max=4.0), pf.Intermittent(SENSOR)
+    sight, sensor = pf.FieldOfView(WORLD, r_max=4.0), pf.Masked(SENSOR)
     log = pf.simulate_log(START, TURN, NOISY, sensor, rng(), batch=5, sight=sight)
     for _, _, z, truth in log:
         np.testing.assert_array_equal(z[-1], sight(truth))
-    with pytest.raises(pf.ParameterError, match="Intermittent"):
+    with pytest.raises(pf.ParameterError, match="Masked"):
         pf.simulate_log(START, TURN, NOISY, SENSOR, rng(), batch=5, sight=sight)

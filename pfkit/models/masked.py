@@ -1,7 +1,7 @@
 r"""Sensing now and then, in step with others.
 
 A single robot that does not see a landmark records nothing about it. B robots that are
-simulated side by side see different landmarks, and arrays have no holes. `Intermittent` adds
+simulated side by side see different landmarks, and arrays have no holes. `Masked` adds
 a row to the measurement that is 1 where something was measured and 0 where not; a column
 with a 0 says nothing about the pose:
 
@@ -26,7 +26,7 @@ Array = NDArray[np.float64]
 
 
 @dataclass(frozen=True)
-class Intermittent(Sensor):
+class Masked(Sensor):
     """A sensor whose columns carry one more row: 1 measured, 0 not.
 
     Parameters
