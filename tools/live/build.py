@@ -39,6 +39,7 @@ SITE = CACHE / "site"
 PARTS = CACHE / "parts"
 PALETTE = ROOT / "pfkit" / "palette.py"
 OURS = (ROOT / "pfkit" / "explore" / "web", ROOT / "book" / "live")
+DATA = (".txt", ".dat", ".csv")
 RUNTIME = ("pyodide.js", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip")
 EDGE: dict[str, tuple[str, ...]] = runpy.run_path(str(ROOT / "pfkit" / "rooms.py"))["EDGE"]
 # What needs matplotlib, ipywidgets or nbformat stays behind: the page does not have them.
@@ -152,10 +153,18 @@ def build_runtime(parts: Path) -> None:
     (parts / "LICENCES.txt").write_text("Third-party parts in this folder\n\n" + text)
 
 
+def logs_in_use() -> list[Path]:
+    """The folders below data/ from which some notebook reads, as its stamp says."""
+    stamps = [json.loads(p.read_text(encoding="utf-8"))["metadata"].get("pfkit", {})
+              for p in sorted((ROOT / "notebooks").rglob("*.ipynb"))]  # fmt: skip
+    opened = {name for stamp in stamps for name in stamp.get("files", [])}
+    return sorted({(ROOT / name).parent for name in opened if name.startswith("data/")})
+
+
 def pfkit_files() -> dict[str, bytes]:
     """The part of pfkit that runs in a page, and the logs beside it, where its loaders look."""
     package = ROOT / "pfkit"
-    logs = [p for p in (ROOT / "data").rglob("*") if p.suffix in (".txt", ".dat", ".csv")]
+    logs = [p for top in logs_in_use() for p in top.rglob("*") if p.suffix in DATA]
     names = [p for p in package.rglob("*") if p.suffix in (".py", ".json", ".npz", ".csv", ".txt")]
     return {
         "pfkit/" + p.relative_to(package).as_posix(): p.read_bytes()
@@ -220,7 +229,7 @@ def main() -> int:
         except Missing as problem:
             reason = str(problem)
             shutil.rmtree(PARTS, ignore_errors=True)
-    state = made_from + digest(ROOT / "pfkit", ROOT / "data", *OURS) + reason
+    state = made_from + digest(ROOT / "pfkit", *logs_in_use(), *OURS) + reason
     if not (SITE.exists() and (CACHE / "site.stamp").exists()
             and (CACHE / "site.stamp").read_text() == state):  # fmt: skip
         CACHE.mkdir(parents=True, exist_ok=True)
