@@ -18,6 +18,7 @@ from __future__ import annotations
 import math
 import os
 from pathlib import Path
+from types import ModuleType
 from typing import Any
 
 import numpy as np
@@ -184,12 +185,18 @@ def whole_cells(at: np.ndarray) -> np.ndarray:
 
 
 def require_rng(rng: Any) -> None:
-    """Raise `ParameterError` unless `rng` is (or behaves as) a numpy.random.Generator."""
-    if not hasattr(rng, "spawn"):  # what a Generator has and neither a seed nor np.random has
+    """Refuse what is no generator of one's own: a seed, None, np.random itself, a RandomState.
+
+    The last two would work, from a state that all share; anything else says itself what it lacks.
+    """
+    if isinstance(rng, _NO_GENERATOR):
         raise ParameterError(
             f"rng must be a numpy.random.Generator, got {rng!r:.60}; "
             "make one with np.random.default_rng(seed)"
         )
+
+
+_NO_GENERATOR = (int, np.integer, type(None), ModuleType, np.random.RandomState)
 
 
 def require_method(name: str, model: Any, *methods: str) -> None:

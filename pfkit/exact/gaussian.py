@@ -226,8 +226,6 @@ def _measure(sensor: Any, state: Array, rng: Any, which: dict[str, Any]) -> Arra
 class _Normals:
     """In place of a generator: hands out given standard normals, and counts them."""
 
-    spawn = None  # `require_rng` knows a generator by this name
-
     def __init__(self, given: Array | None = None) -> None:
         self.given, self.used = given, 0
 
