@@ -5,6 +5,7 @@ independent runs once, then repeats the check's decision on draws from that pool
 """
 
 import math
+from collections.abc import Callable
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -43,6 +44,30 @@ SIDE_BY_SIDE = 250  # runs of one call: quick, and not too large for memory
 WORLDS = 6  # sets of settings that a replay visits
 
 
+def _joined(parts: list[dict[str, np.ndarray]]) -> dict[str, np.ndarray]:
+    """Responses by name, of several calls one below the other."""
+    return {
+        name: np.concatenate([p[name] for p in parts])
+        for name in parts[0]
+        if all(name in p for p in parts)
+    }
+
+
+def in_its_own_way(answer: Callable[..., Any]) -> Callable[..., Any]:
+    """The same program with other random numbers, as one that draws in another order.
+
+    Beside a reference on the same seeds a copy of it can never fail; this one can.
+    """
+
+    def run(*args: Any, **kwargs: Any) -> Any:
+        def other(a: Any) -> Any:
+            return a.spawn(1)[0] if isinstance(a, np.random.Generator) else a
+
+        return answer(*map(other, args), **{k: other(a) for k, a in kwargs.items()})
+
+    return run
+
+
 def replay(
     item: Experiment,
     answer: Any,
@@ -76,24 +101,27 @@ def replay(
     rng = np.random.default_rng(seed)
     pool = pool or item.pool
     worlds = WORLDS if item.settings is not None else 1
-    pools = []
+    pools, others = [], []
     try:
         for w in range(0 if fresh else worlds):
             size = max(2 * item.runs, pool // worlds) if worlds > 1 else pool
             part = max(item.runs, min(size, SIDE_BY_SIDE))
-            parts = [
-                item.outcomes(answer, part, seed=seed + 1 + k + 1000 * w, world=seed + w)
-                for k in range(-(-size // part))
-            ]
-            pools.append(np.concatenate(parts))
+            where = [(part, seed + 1 + k + 1000 * w, seed + w) for k in range(-(-size // part))]
+            pools.append(np.concatenate([item.outcomes(answer, *place) for place in where]))
+            if answer is not item.reference:
+                others.append(_joined([item.rivals(*place) for place in where]))
         fails, names = 0, dict[str, int]()
         for k in range(decisions):
             if fresh:
                 drawn = item.outcomes(answer, item.runs, seed=seed + 1 + k, world=seed + k)
             else:
                 runs = pools[k % worlds]
-                drawn = runs[rng.choice(len(runs), item.runs, replace=False)]
+                rows = rng.choice(len(runs), item.runs, replace=False)
+                drawn = runs[rows]
             judged = item.decide(drawn)
+            if judged.fraction < 1 and not fresh and others:
+                rivals = {name: x[rows] for name, x in others[k % worlds].items()}
+                judged = item.decide(drawn, rivals)
             if judged.fraction < 1:
                 fails += 1
                 name = judged.misconception.name if judged.misconception else ""

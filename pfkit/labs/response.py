@@ -6,12 +6,15 @@ student's function and the reference with the same random numbers, and asks whet
 does what the second does: the same mean at every setting, the same scatter from run to run.
 
 `each_setting` makes the outcomes, `same_mean` and `same_scatter` decide, `Counted` and `Watched`
-see whether an experiment was made at all.
+see whether an experiment was made at all, `calls` whether an answer only calls what it should
+write.
 """
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Sequence
+from types import FrameType
 from typing import Any
 
 import numpy as np
@@ -21,21 +24,38 @@ Outcomes = NDArray[np.float64]
 
 
 def each_setting(
-    f: Callable[..., Any], settings: Sequence[tuple], seed: int, runs: int
+    f: Callable[..., Any],
+    settings: Sequence[tuple],
+    seed: int,
+    runs: int,
+    together: bool = False,
 ) -> Outcomes:
     """Outcomes of ``f(*setting, rng)``; the random numbers depend on ``seed`` alone.
 
+    Parameters
+    ----------
+    together : bool
+        ``f(*setting, rng, runs)`` makes all runs side by side: (runs,) numbers, or rows of them.
+
     Returns
     -------
-    array (runs, settings)
+    array (runs, settings), or (runs, settings, rows)
 
     Raises
     ------
     ValueError
-        If a run does not give one finite number.
+        If a run does not give one finite number, or not as many rows as another.
     """
     rng = np.random.default_rng(seed)
     seeds = rng.integers(2**63, size=(runs, len(settings)), dtype=np.int64)
+    if together:
+        return np.stack(
+            [
+                _side_by_side(f(*setting, np.random.default_rng(seeds[0, k]), runs), runs)
+                for k, setting in enumerate(settings)
+            ],
+            axis=1,
+        )
     found = np.empty((runs, len(settings)))
     for i, k in np.ndindex(runs, len(settings)):
         value = np.asarray(f(*settings[k], np.random.default_rng(seeds[i, k])), dtype=float)
@@ -43,6 +63,28 @@ def each_setting(
             raise ValueError(f"expected one number per run, got shape {value.shape}")
         found[i, k] = value.item()
     return found
+
+
+def _side_by_side(found: Any, runs: int) -> Outcomes:
+    """Numbers (runs,) or (rows, runs), the runs first."""
+    x = np.asarray(found, dtype=float)
+    if x.ndim not in (1, 2) or x.shape[-1] != runs:
+        raise ValueError(f"expected one number for each of {runs} runs, got shape {x.shape}")
+    return np.moveaxis(x, -1, 0)
+
+
+def distance(x: Outcomes, slack: float = 0.0) -> NDArray[np.float64]:
+    """Difference of the means of a pair of outcomes (runs, ..., 2), in its standard errors."""
+    mean, wanted = np.moveaxis(x.mean(axis=0), -1, 0)
+    off = np.sign(mean - wanted) * np.maximum(np.abs(mean - wanted) - slack, 0)
+    error = np.sqrt(x.var(axis=0, ddof=1).sum(axis=-1) / len(x)) + 1e-9 * (1 + np.abs(wanted))
+    return off / error
+
+
+def _place(at: NDArray[np.float64]) -> tuple[tuple[int, ...], str]:
+    """Where the largest value stands: its index, and ``setting 2, row 1``."""
+    index = tuple(int(k) for k in np.unravel_index(int(np.argmax(at)), at.shape))
+    return index, f"setting {index[0] + 1}" + "".join(f", row {k + 1}" for k in index[1:])
 
 
 def same_mean(standard_errors: float = 4.5, slack: float = 0.0) -> Callable[[Outcomes], Any]:
@@ -59,14 +101,12 @@ def same_mean(standard_errors: float = 4.5, slack: float = 0.0) -> Callable[[Out
     """
 
     def holds(x: Outcomes) -> Any:
-        mean, wanted = x.mean(axis=0).T
-        off = np.sign(mean - wanted) * np.maximum(np.abs(mean - wanted) - slack, 0)
-        error = np.sqrt(x.var(axis=0, ddof=1).sum(axis=-1) / len(x)) + 1e-9 * (1 + np.abs(wanted))
-        z = off / error
+        z = distance(x, slack)
         if max(np.abs(z).max(), abs(z.sum()) / np.sqrt(z.size)) <= standard_errors:
             return True
-        k = int(np.argmax(np.abs(z)))
-        return f"setting {k + 1}: {mean[k]:.4g} on average, a right one {wanted[k]:.4g}"
+        index, place = _place(np.abs(z))
+        mean, wanted = x.mean(axis=0)[index]
+        return f"{place}: {mean:.4g} on average, a right one {wanted:.4g}"
 
     return holds
 
@@ -78,13 +118,13 @@ def same_scatter(ratio: float = 2.0) -> Callable[[Outcomes], Any]:
     """
 
     def holds(x: Outcomes) -> Any:
-        sd, wanted = x.std(axis=0, ddof=1).T
+        sd, wanted = np.moveaxis(x.std(axis=0, ddof=1), -1, 0)
         tiny = 1e-9 * (1 + np.abs(x[..., 1]).max(axis=0))
         off = (sd > ratio * wanted + tiny) | (ratio * sd + tiny < wanted)
         if not off.any():
             return True
-        k = int(np.argmax(off))
-        return f"setting {k + 1}: sd {sd[k]:.3g} from run to run, a right one {wanted[k]:.3g}"
+        index, place = _place(off)
+        return f"{place}: sd {sd[index]:.3g} from run to run, a right one {wanted[index]:.3g}"
 
     return holds
 
@@ -127,3 +167,23 @@ class Watched:
             return found(*args, **kwargs)
 
         return called
+
+
+def calls(run: Callable[[], Any], module: str) -> bool:
+    """Does ``run()`` reach a function of ``module``, under whatever name?
+
+    What is written oneself must not be a call of what stands in the library.
+    """
+    found = False
+
+    def look(frame: FrameType, event: str, _: Any) -> None:
+        nonlocal found
+        found = found or (event == "call" and frame.f_globals.get("__name__") == module)
+
+    before = sys.getprofile()
+    sys.setprofile(look)
+    try:
+        run()
+    finally:
+        sys.setprofile(before)
+    return found

@@ -8,21 +8,24 @@ with their 95 % bounds (run pytest with ``-s``) and held to the declaration.
 import pytest
 
 from pfkit.labs import Experiment, catalogue, replay
-from pfkit.labs.replay import upper_bound
+from pfkit.labs.replay import in_its_own_way, upper_bound
 
 LABS = catalogue.all_labs()
 ITEMS = [(lab, i) for lab in LABS for i in LABS[lab].items.values() if isinstance(i, Experiment)]
 MISTAKES = [(lab, i, m) for lab, i in ITEMS for m in i.misconceptions]
+REFUSED = [(lab, i, r) for lab, i in ITEMS for r in i.refused]
 FRESH = {"one-call"}  # its runs are copies of each other
 
 
 def name(value):
-    return getattr(value, "id", None) or getattr(value, "name", None) or str(value)
+    names = (getattr(value, kind, None) for kind in ("id", "name", "says"))
+    return next(filter(None, names), str(value))
 
 
 @pytest.mark.parametrize(("lab", "item"), ITEMS, ids=name)
 def test_a_right_experiment_is_not_failed(lab, item):
-    rate = replay(item, item.reference)
+    right = in_its_own_way(item.reference) if item.settings else item.reference
+    rate = replay(item, right)
     print(
         f"{lab} {item.id}: {rate.fails} of {rate.decisions} replays fail, "
         f"below {rate.bound:.1e} with 95 % (declared {item.false_fail:.0e}; {item.margin})"
@@ -43,6 +46,15 @@ def test_a_wrong_experiment_is_caught_and_named(lab, item, mistake):
     )
     assert rate.share >= 0.95
     assert named >= 0.95
+
+
+@pytest.mark.parametrize(("lab", "item", "refused"), REFUSED, ids=name)
+def test_a_lazy_experiment_is_refused(lab, item, refused):
+    pool = max(min(item.pool, 600) // 4, 3 * item.runs)
+    rate = replay(item, refused.example, 200, pool)
+    print(f"{lab} {item.id} {refused.says}: refused {rate.share:.3f}")
+    assert rate.share >= 0.95
+    assert rate.misconceptions.get(refused.named, 0) >= 0.95 * rate.fails
 
 
 def test_upper_bound_is_the_rule_of_three():

@@ -3,8 +3,17 @@
 import numpy as np
 import pytest
 
+import pfkit as pf
 from pfkit.labs import experiment, replay
-from pfkit.labs.response import Counted, Watched, each_setting, same_mean, same_scatter
+from pfkit.labs.replay import in_its_own_way
+from pfkit.labs.response import (
+    Counted,
+    Watched,
+    calls,
+    each_setting,
+    same_mean,
+    same_scatter,
+)
 
 
 @pytest.fixture(scope="module")
@@ -69,6 +78,69 @@ def test_the_random_numbers_depend_on_the_seed_alone():
     a = each_setting(lambda k, rng: k * rng.random(), settings, 5, 4)
     b = each_setting(lambda k, rng: rng.random(), settings, 5, 4)
     np.testing.assert_allclose(a, b * [1, 2])
+
+
+@pytest.fixture(scope="module")
+def walk():
+    @experiment(
+        """Where a walk of n steps ends, and how far out
+        h1
+        h2
+        h3""",
+        claim="mean 0, distance as the root of n",
+        test="as a right experiment",
+        runs=400,
+        together=True,
+        settings=lambda rng: [(int(n),) for n in rng.choice(np.arange(10, 60, 10), 2, False)],
+    )
+    def ends(n, rng, runs):
+        x = rng.standard_normal((n, runs)).sum(axis=0)
+        return x, np.abs(x)
+
+    ends.holds("the means follow n", same_mean())
+    ends.holds("the runs scatter", same_scatter())
+    hints = """{}
+    h1
+    h2
+    h3"""
+    ends.wrong(hints.format("one-way: only ever goes up"))(
+        lambda n, rng, runs: _one_way(n, rng, runs)
+    )
+    ends.wrong(hints.format("half: goes half the way"))(
+        lambda n, rng, runs: ends(n // 2, rng, runs)
+    )
+    return ends
+
+
+def _one_way(n, rng, runs):
+    x = np.abs(rng.standard_normal((n, runs))).sum(axis=0)
+    return x, np.abs(x)
+
+
+def test_runs_side_by_side_give_rows(walk):
+    assert walk.outcomes(walk.reference, 30).shape == (30, 2, 2, 2)
+    assert walk.judge(walk.reference).fraction == 1
+    assert replay(walk, in_its_own_way(walk.reference), 300).fails == 0
+    for wrong in (lambda n, rng, runs: np.zeros(3), lambda n, rng, runs: np.zeros(runs)):
+        (line,) = walk.judge(wrong).lines
+        assert not line.ok and "shape" in line.detail
+
+
+def test_a_wrong_program_is_known_by_its_response(walk):
+    """Also in another order of random numbers; what resembles none is not named."""
+    for mistake in walk.misconceptions:
+        for answer in (mistake.example, in_its_own_way(mistake.example)):
+            assert walk.judge(answer).misconception is mistake
+    judged = walk.judge(lambda n, rng, runs: walk(3 * n, rng, runs))
+    assert judged.fraction < 1 and judged.misconception is None
+    assert judged.example.startswith("Setting 1: n = ")
+
+
+def test_calls_of_a_module_are_seen_under_any_name():
+    hidden = {"f": pf.systematic}
+    w = np.full(4, 0.25)
+    assert calls(lambda: hidden["f"](w, np.random.default_rng(1)), "pfkit.resampling")
+    assert not calls(lambda: pf.wrap(4.0), "pfkit.resampling")
 
 
 def test_more_than_one_number_is_named():

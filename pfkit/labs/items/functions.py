@@ -1,10 +1,11 @@
 """C and X: functions, run by the check."""
 
 import ast
+import contextlib
 import copy
 import inspect
 import textwrap
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar, Self
 
@@ -13,10 +14,11 @@ import numpy as np
 from pfkit.labs import response
 from pfkit.labs.guard import describe
 from pfkit.labs.items.base import Item, Judgement, Misconception, Property, tested
-from pfkit.labs.items.counterexample import MOST_CALLS, Call, can_be_told, smallest
+from pfkit.labs.items.counterexample import MOST_CALLS, Call, can_be_told, shown, smallest
 from pfkit.labs.verdict import Line
 
-MOST_KEPT = 64  # outcomes of the reference that are kept for the next answer
+MOST_KEPT = 256  # outcomes of right and wrong programs that are kept for the next answer
+ALIKE = 3.0  # standard errors between an answer and the wrong program that it is taken for
 IN_PLACE = "It writes into its argument, so the caller's array changes, too: x = x + 1, not x += 1."
 
 
@@ -55,6 +57,11 @@ def as_array(value: Any) -> Any:
         return value
     found = np.asarray(value)
     return found if found.dtype.kind in "biufc" else value
+
+
+def _named(name: str, value: Any) -> str:
+    """``M = 20``, ``scheme = systematic``."""
+    return f"{name} = {value.__name__ if hasattr(value, '__name__') else shown(value)}"
 
 
 def _not_a_function(answer: Any) -> Judgement:
@@ -195,6 +202,9 @@ class Experiment(Function):
         student did not choose. ``f(*setting, rng)`` is called ``runs`` times for each, and so is
         the reference, with the same random numbers; outcomes have shape (runs, settings, 2).
         The answer must *respond* as the reference does, see `pfkit.labs.response`.
+    together : bool
+        With ``settings``: ``f(*setting, rng, runs)`` makes all runs of a setting side by side and
+        returns (runs,) numbers, or rows of them; outcomes get a third axis for the rows.
     measure : callable
         ``measure(f, rng, runs)`` -> outcomes of the runs, an array whose first axis is the runs.
         By default ``f(rng)`` is called once per run. Not together with ``settings``.
@@ -205,6 +215,9 @@ class Experiment(Function):
     pool : int
         How many independent runs `pfkit.labs.replay` draws its decisions from: fewer where a run
         is slow, and then the margin carries the claim.
+
+    A misconception without ``when`` is recognised by its response: the wrong program runs at the
+    same settings, and the answer has the same means and scatter. Of several the nearest counts.
     """
 
     letter: ClassVar[str] = "X"
@@ -213,6 +226,7 @@ class Experiment(Function):
     test: str
     runs: int
     settings: Callable[[np.random.Generator], Sequence[tuple]] | None = None
+    together: bool = False
     measure: Callable[[Any, np.random.Generator, int], Any] = each_run
     false_fail: float = 1e-4
     margin: str = ""
@@ -241,26 +255,49 @@ class Experiment(Function):
             Seed of the settings, by default that of the check.
         """
         seed = self.seed if seed is None else seed
-        if self.settings is None:
-            found = np.asarray(self.measure(answer, np.random.default_rng(seed), runs), dtype=float)
-        else:
-            settings = self.settings(np.random.default_rng(self.seed if world is None else world))
-            theirs = response.each_setting(answer, settings, seed, runs)
-            found = np.stack([theirs, self._right(settings, seed, runs)], axis=-1)
+        found = self._response(answer, runs, seed, world)
+        if self.settings is not None:
+            right = self._kept_response(self.reference, runs, seed, world)
+            if found.shape != right.shape:
+                wanted, got = ((*x.shape[2:], runs) for x in (right, found))
+                raise ValueError(f"expected numbers of shape {wanted}, got shape {got}")
+            found = np.stack([found, right], axis=-1)
         if found.shape[:1] != (runs,):
             raise ValueError(f"expected results of {runs} runs, got shape {found.shape}")
         if not np.isfinite(found).all():
             raise ValueError("some results are nan or infinite")
         return found
 
-    def _right(self, settings: Sequence[tuple], seed: int, runs: int) -> np.ndarray:
-        """The reference's outcomes, computed once for all answers that are compared with them."""
-        key = (repr(settings), seed, runs)
+    def met(self, world: int | None = None) -> Sequence[tuple]:
+        """The settings of the check, or those of another world."""
+        assert self.settings is not None
+        return self.settings(np.random.default_rng(self.seed if world is None else world))
+
+    def _response(self, answer: Any, runs: int, seed: int, world: int | None) -> np.ndarray:
+        """What an answer makes of the settings, or of what ``measure`` hands to it."""
+        if self.settings is None:
+            return np.asarray(self.measure(answer, np.random.default_rng(seed), runs), dtype=float)
+        return response.each_setting(answer, self.met(world), seed, runs, self.together)
+
+    def _kept_response(self, known: Any, runs: int, seed: int, world: int | None) -> np.ndarray:
+        """The same of a program of ours, computed once for all answers compared with it."""
+        key = (id(known), self.seed if world is None else world, seed, runs)
         if key not in self._kept:
             if len(self._kept) >= MOST_KEPT:
                 self._kept.clear()
-            self._kept[key] = response.each_setting(self.reference, settings, seed, runs)
+            self._kept[key] = self._response(known, runs, seed, world)
         return self._kept[key]
+
+    def rivals(
+        self, runs: int, seed: int | None = None, world: int | None = None
+    ) -> dict[str, np.ndarray]:
+        """The responses of the wrong programs that answers are compared with, by name."""
+        seed, found = self.seed if seed is None else seed, {}
+        for mistake in self.misconceptions:
+            if mistake.when is None:
+                with contextlib.suppress(Exception):  # one that raises resembles nothing
+                    found[mistake.name] = self._kept_response(mistake.example, runs, seed, world)
+        return found
 
     def judge(self, answer: Any) -> Judgement:
         if not callable(answer):
@@ -268,15 +305,47 @@ class Experiment(Function):
         try:
             found = self.outcomes(answer, self.runs)
         except (Exception, SystemExit) as error:
-            return Judgement((Line("the experiment runs", False, describe(error)),))
-        return self.decide(found)
+            line = Line("the experiment runs", False, describe(error))
+            return Judgement((line,), example=self._told())
+        judged = self.decide(found)
+        if judged.fraction < 1:
+            judged = self.decide(found, self.rivals(self.runs))
+        return judged
 
-    def decide(self, found: np.ndarray) -> Judgement:
+    def decide(
+        self, found: np.ndarray, rivals: Mapping[str, np.ndarray] | None = None
+    ) -> Judgement:
         """The decision alone, for given outcomes: this is what the replay tests repeat."""
         lines = tuple(tested(p, found) for p in self.properties)
         if all(x.ok for x in lines):
             return Judgement(lines, None, self.declaration)
-        return Judgement(lines, self._recognise(found))
+        mistake = self._recognise(found) or self._nearest(found, rivals or {})
+        return Judgement(lines, mistake, example="" if mistake else self._told())
+
+    def _nearest(self, found: np.ndarray, rivals: Mapping[str, np.ndarray]) -> Misconception | None:
+        """The wrong program that answers alike; None if none does."""
+        answer = found if self.settings is None else found[..., 0]
+        best, least = None, np.inf
+        for mistake in self.misconceptions:
+            theirs = rivals.get(mistake.name)
+            if theirs is None or theirs.shape != answer.shape:
+                continue
+            pair = np.stack([answer, theirs], axis=-1)
+            apart = float(np.abs(response.distance(pair)).max())
+            same = response.same_mean(ALIKE)(pair) is True
+            if same and response.same_scatter()(pair) is True and apart < least:
+                best, least = mistake, apart
+        return best
+
+    def _told(self) -> str:
+        """The settings in words: ``Setting 1: M = 20, w = 0.1.``"""
+        if self.settings is None:
+            return ""
+        names = list(inspect.signature(self.reference).parameters)
+        return " ".join(
+            f"Setting {k}: {', '.join(map(_named, names, setting))}."
+            for k, setting in enumerate(self.met(), start=1)
+        )
 
     @property
     def declaration(self) -> str:

@@ -143,13 +143,16 @@ class Numeric(Item):
             return [self._read(part) for part in answer]
         return answer
 
-    def _close(self, x: Any, key: Any) -> np.ndarray:
-        # a hair wider than stated, so that a value exactly on the edge is accepted
+    def _off(self, x: Any, key: Any) -> np.ndarray:
         off = np.asarray(x, dtype=float) - key
         if self.unit in units.TURN:  # angles are the same a turn further
             turn = units.TURN[self.unit]
             off = off - turn * np.round(off / turn)
-        return np.abs(off) <= self.tol * (1 + 1e-9)
+        return np.abs(off)
+
+    def _close(self, x: Any, key: Any) -> np.ndarray:
+        # a hair wider than stated, so that a value exactly on the edge is accepted
+        return self._off(x, key) <= self.tol * (1 + 1e-9)
 
     def judge(self, answer: Any) -> Judgement:
         count = np.size(self.key)
@@ -188,7 +191,13 @@ class Numeric(Item):
     def _fits(self, mistake: Misconception, evidence: Any) -> bool:
         if mistake.when is not None:
             return bool(mistake.when(evidence))
-        return bool(np.all(self._close(evidence, mistake.example)))
+        # where a wrong value is small, the tolerance of the right one would name all that is small
+        narrow = np.where(np.equal(mistake.example, 0), self.tol, 0.05 * np.abs(mistake.example))
+        return bool(
+            np.all(
+                self._off(evidence, mistake.example) <= np.minimum(self.tol, narrow) * (1 + 1e-9)
+            )
+        )
 
 
 def _is_rounded(value: float, key: float) -> bool:
