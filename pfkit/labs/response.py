@@ -169,8 +169,8 @@ class Watched:
         return called
 
 
-def calls(run: Callable[[], Any], module: str) -> bool:
-    """Does ``run()`` reach a function of ``module``, under whatever name?
+def calls(run: Callable[[], Any], *modules: str) -> bool:
+    """Does ``run()`` reach a function of these modules, under whatever name?
 
     What is written oneself must not be a call of what stands in the library.
     """
@@ -178,7 +178,7 @@ def calls(run: Callable[[], Any], module: str) -> bool:
 
     def look(frame: FrameType, event: str, _: Any) -> None:
         nonlocal found
-        found = found or (event == "call" and frame.f_globals.get("__name__") == module)
+        found = found or (event == "call" and frame.f_globals.get("__name__") in modules)
 
     before = sys.getprofile()
     sys.setprofile(look)

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import numpy as np
 
+import pfkit as pf
 from pfkit.labs import Choice, Question, code
+from pfkit.labs.response import calls
 from pfkit.labs.statistics import rng_of
 
 Q3 = Question("The constant in the likelihood")
 
 _LOGS = np.array([-1.0, -3.0, -2.5, -0.2])
+
+_FAR_APART = np.array([0.0, -800.0, 1700.0, 1699.0])
 
 
 def _fix(seed):
@@ -17,10 +21,17 @@ def _fix(seed):
     return rng.normal(0, 2, 2), rng.normal(0, 2, (2, 12)), 1.7
 
 
-def _integral(f, sigma):
-    axis = np.arange(-40.0, 40.0, 0.5)
+def _shifted(seed, by=(40.0, -30.0)):
+    z, state, sigma = _fix(seed)
+    return z + by, state + np.array(by)[:, None], sigma
+
+
+def _integrates(f):
+    """Sums of the density over a fine grid, for two sigmas."""
+    axis = np.arange(-25.0, 25.0, 0.5)
     grid = np.stack(np.meshgrid(axis, axis)).reshape(2, -1)
-    return float(np.exp(f(np.zeros(2), grid, sigma)).sum() * 0.25)
+    found = [float(np.exp(f(np.zeros(2), grid, s)).sum() * 0.25) for s in (2.0, 3.0)]
+    return max(abs(v - 1) for v in found) < 1e-3 or f"it gives {found[0]:.3g} and {found[1]:.3g}"
 
 
 q3a = Choice("""Leave the constant out: what happens to the normalised weights?
@@ -54,9 +65,9 @@ q3b = Choice("""Where does it matter, then?
     fingerprint=lambda f: [*f(*_fix(1)), *f(np.array([60.0, 0]), np.zeros((2, 1)), 1.0)],
 )
 def log_likelihood(z, state, sigma):
-    """log N(z; (x, y), sigma^2 I) at every state: two dimensions, full constant."""
-    d2 = (z[0] - state[0]) ** 2 + (z[1] - state[1]) ** 2
-    return -d2 / (2 * sigma**2) - np.log(2 * np.pi * sigma**2)
+    """log p(z | x) at every particle: z (2,), state (2, M), sigma in px; result (M,)."""
+    dx, dy = z[0] - state[0], z[1] - state[1]
+    return -(dx**2 + dy**2) / (2 * sigma**2) - np.log(2 * np.pi * sigma**2)
 
 
 log_likelihood.holds("one number per particle", lambda f: np.shape(f(*_fix(0))) == (12,))
@@ -75,9 +86,10 @@ log_likelihood.holds(
     ),
 )
 log_likelihood.holds(
-    "the density integrates to one",
-    lambda f: abs(_integral(f, 3.0) - 1) < 1e-3 or f"it gives {_integral(f, 3.0):.3g}",
+    "only the difference counts: shift z and all particles, and nothing changes",
+    lambda f: np.allclose(f(*_fix(2)), f(*_shifted(2))),
 )
+log_likelihood.holds("the density integrates to one", _integrates)
 log_likelihood.holds(
     "finite and ordered at 5,000 and 10,000 sigma",
     lambda f: (
@@ -85,6 +97,10 @@ log_likelihood.holds(
         < f(np.array([1e4, 0.0]), np.zeros((2, 1)), 1.0)[0]
         < f(np.array([5e3, 0.0]), np.zeros((2, 1)), 1.0)[0]
     ),
+)
+log_likelihood.holds(
+    "it is your own: no call of pf.Position",
+    lambda f: not calls(lambda: f(*_fix(3)), "pfkit.sensors", "pfkit.gaussian"),
 )
 
 
@@ -167,6 +183,49 @@ def floor(z, state, sigma):
     return np.log(np.exp(-(dx + dy) / (2 * sigma**2)) / (2 * np.pi * sigma**2) + 1e-300)
 
 
+@log_likelihood.refuses("adds z and the state")
+def added(z, state, sigma):
+    return log_likelihood(z, -state, sigma)
+
+
+@log_likelihood.refuses("takes the distance itself, not its square")
+def distance_itself(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return -np.sqrt(dx + dy) / (2 * sigma) - np.log(2 * np.pi * sigma**2)
+
+
+@log_likelihood.refuses("adds up |dx| and |dy| before it squares")
+def city_block(z, state, sigma):
+    d = np.abs(z[0] - state[0]) + np.abs(z[1] - state[1])
+    return -(d**2) / (2 * sigma**2) - np.log(2 * np.pi * sigma**2)
+
+
+@log_likelihood.refuses("has a constant with pi for 2 pi")
+def half_constant(z, state, sigma):
+    return log_likelihood(z, state, sigma) + np.log(2)
+
+
+@log_likelihood.refuses("cuts the exponent off at -700")
+def cut_off(z, state, sigma):
+    return np.maximum(log_likelihood(z, state, sigma), -700)
+
+
+@log_likelihood.refuses("adds the logarithms of all particles up")
+def added_up(z, state, sigma):
+    return log_likelihood(z, state, sigma).sum()
+
+
+@log_likelihood.refuses("has the tails of another distribution")
+def student(z, state, sigma):
+    dx, dy = _d2(z, state)
+    return -2 * np.log1p((dx + dy) / (2 * sigma**2)) - np.log(2 * np.pi * sigma**2)
+
+
+@log_likelihood.refuses("calls the library")
+def library(z, state, sigma):
+    return pf.Position(sigma).log_likelihood(z[:, None], state)
+
+
 @code(
     """Weights from log-likelihoods
     A constant added to all logarithms cancels when you normalise. Add a good one.
@@ -176,8 +235,8 @@ def floor(z, state, sigma):
     fingerprint=lambda f: [*f(_LOGS), *np.nan_to_num(f(_LOGS - 2e4), nan=-1.0)],
 )
 def weights_of(log_l):
-    """Normalised weights from log-likelihoods, equal weights before."""
-    w = np.exp(log_l - np.max(log_l))
+    """Normalised weights (M,) from log-likelihoods log_l (M,)."""
+    w = np.exp(log_l - log_l.max())
     return w / w.sum()
 
 
@@ -192,6 +251,12 @@ weights_of.holds(
 weights_of.holds(
     "20,000 below zero they are still right",
     lambda f: np.allclose(f(_LOGS - 2e4), weights_of(_LOGS)),
+)
+
+
+weights_of.holds(
+    "they are right where the best is 2,500 above the worst, whatever stands first",
+    lambda f: np.allclose(f(_FAR_APART), weights_of(_FAR_APART)),
 )
 
 
@@ -231,3 +296,44 @@ weights_of.wrong("""logarithms: normalises the logarithms themselves
 def sign(log_l):
     w = np.exp(np.min(log_l) - log_l)
     return w / w.sum()
+
+
+@weights_of.refuses("subtracts the mean: large ones overflow")
+def minus_mean(log_l):
+    w = np.exp(log_l - np.mean(log_l))
+    return w / w.sum()
+
+
+@weights_of.refuses("subtracts the least: large ones overflow")
+def minus_least(log_l):
+    w = np.exp(log_l - np.min(log_l))
+    return w / w.sum()
+
+
+@weights_of.refuses("subtracts the first, so all depends on the order")
+def minus_first(log_l):
+    w = np.exp(log_l - log_l[0])
+    return w / w.sum()
+
+
+@weights_of.refuses("takes powers of 2 for those of e")
+def powers_of_two(log_l):
+    w = 2.0 ** (log_l - np.max(log_l))
+    return w / w.sum()
+
+
+@weights_of.refuses("adds a small number against 0/0", named="all-equal")
+def small_number(log_l):
+    w = np.exp(log_l) + 1e-300
+    return w / w.sum()
+
+
+@weights_of.refuses("cuts the logarithms off at -700", named="all-equal")
+def cut_logarithms(log_l):
+    w = np.exp(np.maximum(log_l, -700))
+    return w / w.sum()
+
+
+@weights_of.refuses("gives all weight to the best")
+def winner(log_l):
+    return (log_l == np.max(log_l)) / np.sum(log_l == np.max(log_l))
