@@ -6,18 +6,18 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Prediction, Question, experiment
-from pfkit.labs.statistics import shaped
-from pfkit.labs.target import anywhere, around, target_log, track
+from pfkit.labs import lab3 as lab
+from pfkit.labs.response import same_mean, same_scatter
 
 Q7 = Question("No process noise, fixed target")
 
-FILM = target_log("fixed", "low")
-HOME = FILM.start[:2]
 
-
-def _collapse(f, rng, runs):
-    pairs = [shaped(f(sigma, rng, runs), 2, runs) for sigma in (0.0, 1.0)]
-    return np.stack(pairs).transpose(2, 0, 1)
+def _noises(rng):
+    """No noise for a few frames, two amounts of noise, no noise for many frames."""
+    sigma = 0.0, rng.uniform(0.2, 0.5), rng.uniform(1.5, 3.0), 0.0
+    M = rng.integers([60, 60, 90, 40], [90, 90, 120, 60])
+    frames = rng.integers([2, 20, 20, 80], [5, 40, 40, 120])
+    return [(float(s), int(m), int(t)) for s, m, t in zip(sigma, M, frames, strict=True)]
 
 
 q7a = Prediction("""Resampling each of 400 frames, no process noise: distinct particles and
@@ -36,55 +36,144 @@ q7a = Prediction("""Resampling each of 400 frames, no process noise: distinct pa
     id="q7b",
     after=q7a,
     points=2,
-    claim="without process noise at most 5 of 100 distinct particles are left, while the "
-    "ESS is 100; with noise of 1 px more than 60 are distinct",
-    test="largest count over runs <= 5; mean ESS > 97; smallest count with noise > 60",
-    runs=5,
-    pool=500,
-    margin="1 or 2 distinct against 5; ESS 100; 81 (sd 1.8) against 60: 11 standard errors",
-    measure=_collapse,
+    claim="distinct particles and ESS follow the process noise, the particles and the frames",
+    test="both means within 5 standard errors of a right experiment's at each of four settings, "
+    "scatter within a factor of 3.5 where there is any",
+    runs=24,
+    pool=900,
+    settings=_noises,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors, eight means: 8e-5 by Student's law",
 )
-def collapse(sigma, rng, runs):
-    """Distinct particles and ESS after 400 frames, for process noise ``sigma``: (2, runs)."""
-    bel = around(HOME, (runs, 100), rng, sigma=20.0)
-    found = track(FILM[:400], bel, pf.FixedTarget(sigma), pf.Position(3.0), rng)
-    x = found.bel.state[0]
-    return np.array([[len(np.unique(row)) for row in x], found.ess[-1]])
+def collapse(sigma, M, frames, rng, runs):
+    """Distinct particles and last ESS: shape (2, runs)."""
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=20.0)
+    run = lab.track(lab.film[:frames], bel, pf.FixedTarget(sigma), pf.Position(3.0), rng)
+    distinct = [len(np.unique(x)) for x in run.bel.state[0]]
+    return np.array([distinct, run.ess[-1]])
 
 
-collapse.holds(
-    "no noise: at most 5 of 100 particles are distinct",
-    lambda x: x[:, 0, 0].max() <= 5 or f"{x[:, 0, 0].max():.0f} are",
-)
-collapse.holds(
-    "and the ESS says 100", lambda x: x[:, 0, 1].mean() > 97 or f"it says {x[:, 0, 1].mean():.0f}"
-)
-collapse.holds(
-    "noise of 1 px: more than 60 are distinct",
-    lambda x: x[:, 1, 0].min() > 60 or f"{x[:, 1, 0].min():.0f} are",
-)
+collapse.holds("distinct particles and ESS follow sigma, M and frames", same_mean(5.0))
+collapse.holds("the runs scatter as independent filters do", lambda x: same_scatter(3.5)(x[:, :3]))
 
 
-@collapse.wrong(
-    """does not resample, so nothing can be lost
+def _last(bel, frames, sigma, rng, scheme=pf.systematic):
+    return lab.track(
+        lab.film[:frames], bel, pf.FixedTarget(sigma), pf.Position(3.0), rng, scheme=scheme
+    )
+
+
+def _distinct(state):
+    return [len(np.unique(x)) for x in state[0]]
+
+
+@collapse.wrong("""does not resample, so nothing can be lost
     All your particles are distinct, yet the ESS is tiny.
     The question resamples at every frame.
-    Leave the scheme of lab.track at its default.""",
-    when=lambda x: x[:, 0, 0].min() > 60 and x[:, 0, 1].mean() < 50,
-)
-def never_resampled(sigma, rng, runs):
-    bel = around(HOME, (runs, 100), rng, sigma=20.0)
-    found = track(FILM[:400], bel, pf.FixedTarget(sigma), pf.Position(3.0), rng, None)
-    return np.array([[len(np.unique(row)) for row in found.bel.state[0]], found.ess[-1]])
+    Leave the scheme of lab.track at its default.""")
+def never_resampled(sigma, M, frames, rng, runs):
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=20.0)
+    run = _last(bel, frames, sigma, rng, None)
+    return np.array([_distinct(run.bel.state), run.ess[-1]])
 
 
-collapse.wrong("""noise-fixed: does not use its argument: both cases have noise
-    Your two cases look alike.
+@collapse.wrong("""does not use sigma: all cases have noise of 1 px
+    Your cases with and without noise look alike.
     Where does sigma enter the motion model?
-    pf.FixedTarget(sigma).""")(
-    lambda sigma, rng, runs: collapse(1.0, rng, runs),
-    when=lambda x: x[:, 0, 0].min() > 60 and x[:, 0, 1].mean() > 50,
-)
+    pf.FixedTarget(sigma).""")
+def noise_fixed(sigma, M, frames, rng, runs):
+    return collapse(1.0, M, frames, rng, runs)
+
+
+@collapse.wrong("""does not use sigma: no case has noise
+    Your cases with and without noise look alike.
+    Where does sigma enter the motion model?
+    pf.FixedTarget(sigma).""")
+def never_noise(sigma, M, frames, rng, runs):
+    return collapse(0.0, M, frames, rng, runs)
+
+
+@collapse.wrong("""follows 400 frames, whatever it is asked
+    How many frames does the check ask for?
+    What is lost in 400 frames may be there after three.
+    lab.film[:frames].""")
+def always_400(sigma, M, frames, rng, runs):
+    return collapse(sigma, M, 400, rng, runs)
+
+
+@collapse.wrong("""has 100 particles, whatever it is asked
+    How many particles does the check ask for?
+    The ESS is at most M.
+    lab.around(start, (runs, M), rng, sigma=20.0).""")
+def always_100(sigma, M, frames, rng, runs):
+    return collapse(sigma, 100, frames, rng, runs)
+
+
+@collapse.wrong("""takes the ESS after resampling, when all weights are equal again
+    Your ESS is M in every case. Could it be anything else where you look?
+    run.bel is what resampling left behind.
+    run.ess[-1] is the ESS before the last resampling.""")
+def after_resampling(sigma, M, frames, rng, runs):
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=20.0)
+    run = _last(bel, frames, sigma, rng)
+    return np.array([_distinct(run.bel.state), run.bel.ess])
+
+
+@collapse.wrong("""starts anywhere in the image
+    How many of your particles are near the ball in the first frame?
+    The question starts around the truth, with sd 20 px.
+    lab.around(lab.film.start[:2], (runs, M), rng, sigma=20.0).""")
+def from_anywhere(sigma, M, frames, rng, runs):
+    run = _last(lab.anywhere((runs, M), rng), frames, sigma, rng)
+    return np.array([_distinct(run.bel.state), run.ess[-1]])
+
+
+@collapse.wrong("""returns the ESS first
+    Which of your rows holds whole numbers only?
+    The order asked for is: distinct particles, ESS.
+    np.array([distinct, run.ess[-1]]).""")
+def ess_first(sigma, M, frames, rng, runs):
+    return collapse(sigma, M, frames, rng, runs)[::-1]
+
+
+@collapse.refuses("the numbers of the figure, without a filter")
+def remembered(sigma, M, frames, rng, runs):
+    row = np.ones(runs)
+    return np.array([row, M * row]) if sigma == 0 else M * np.array([0.84 * row, 0.88 * row])
+
+
+@collapse.refuses("the same with scatter")
+def remembered_with_scatter(sigma, M, frames, rng, runs):
+    return remembered(sigma, M, frames, rng, runs) + rng.normal(0, 2, (2, runs))
+
+
+@collapse.refuses("random in range")
+def by_chance(sigma, M, frames, rng, runs):
+    return np.array([rng.integers(1, M + 1, runs), rng.uniform(1, M, runs)])
+
+
+@collapse.refuses("half as many particles")
+def half_as_many(sigma, M, frames, rng, runs):
+    return collapse(sigma, M // 2, frames, rng, runs)
+
+
+@collapse.refuses("one run, repeated")
+def repeated(sigma, M, frames, rng, runs):
+    return np.repeat(collapse(sigma, M, frames, rng, 1), runs, axis=1)
+
+
+@collapse.refuses("distinct particles in both rows")
+def distinct_twice(sigma, M, frames, rng, runs):
+    return collapse(sigma, M, frames, rng, runs)[[0, 0]]
+
+
+@collapse.refuses("counts the distinct particles of all runs together")
+def all_runs_together(sigma, M, frames, rng, runs):
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=20.0)
+    run = _last(bel, frames, sigma, rng)
+    return np.array([np.full(runs, len(np.unique(run.bel.state[0]))), run.ess[-1]])
+
 
 q7c = Choice("""Why is the ESS blind to this?
     a* It looks at weights only, and copies of one particle weigh the same
@@ -97,6 +186,14 @@ q7c = Choice("""Why is the ESS blind to this?
        = Log-weights do not underflow here; they are simply all equal.""")
 
 Q8 = Question("No resampling")
+
+
+def _filters(rng):
+    """Few particles with a sharp sensor model, many with a blunt one."""
+    few, many = rng.integers([30, 120], [50, 160])
+    sharp, blunt = rng.uniform([3, 20], [5, 30])
+    return [(int(few), float(sharp)), (int(many), float(blunt))]
+
 
 q8a = Prediction("""Order of the errors: plain mean (A) and weighted mean (B) without
          resampling, resampled (C)
@@ -114,45 +211,143 @@ q8a = Prediction("""Order of the errors: plain mean (A) and weighted mean (B) wi
     id="q8b",
     after=q8a,
     points=2,
-    claim="plain mean above 150 px, weighted between 5 and 60 px, resampled below 1 px",
-    test="means over runs within these bands",
-    runs=10,
-    pool=250,
-    margin="201 (sd 2.7), 19.8 (2.3), .573 (.006) px: at least 6 standard errors",
-    measure=lambda f, rng, runs: shaped(f(rng, runs), 3, runs).T,
+    claim="the three errors follow the number of particles and the modelled noise",
+    test="each mean within 5 standard errors of a right experiment's at both settings, scatter "
+    "within a factor of 3.5",
+    runs=24,
+    pool=600,
+    settings=_filters,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors, six means: 6e-5 by Student's law",
 )
-def three_filters(rng, runs):
-    """Mean errors of frames 100 to 200: plain and weighted without resampling; resampled."""
-    motion, sensor = pf.FixedTarget(1.4), pf.Position(3.0)
+def three_filters(M, sigma, rng, runs):
+    """Mean errors in px of A, B, C: shape (3, runs)."""
     rows = []
-    for scheme, weighted in ((None, False), (None, True), (pf.systematic, True)):
-        bel = anywhere((runs, 300), rng)
-        found = track(FILM[:200], bel, motion, sensor, rng, scheme, weighted=weighted)
-        rows.append(found.error[100:].mean(axis=0))
+    for options in ({"scheme": None, "weighted": False}, {"scheme": None}, {}):
+        bel = lab.anywhere((runs, M), rng)
+        motion, sensor = pf.FixedTarget(1.4), pf.Position(sigma)
+        run = lab.track(lab.film[:200], bel, motion, sensor, rng, **options)
+        rows.append(run.error[100:].mean(axis=0))
     return np.array(rows)
 
 
-three_filters.holds(
-    "plain mean without resampling: above 150 px",
-    lambda x: x[:, 0].mean() > 150 or f"{x[:, 0].mean():.1f} px",
-)
-three_filters.holds(
-    "weighted mean without resampling: between 5 and 60 px",
-    lambda x: 5 < x[:, 1].mean() < 60 or f"{x[:, 1].mean():.1f} px",
-)
-three_filters.holds(
-    "resampled: below 1 px", lambda x: x[:, 2].mean() < 1 or f"{x[:, 2].mean():.2f} px"
-)
-three_filters.wrong("""always-resampled: resamples in all three cases
+three_filters.holds("the errors of A, B and C follow M and sigma", same_mean(5.0))
+three_filters.holds("the runs scatter as independent filters do", same_scatter(3.5))
+
+
+def _errors(M, sigma, rng, runs, first=100, **options):
+    """Row of one filter: mean error from frame ``first`` on."""
+    bel, motion = lab.anywhere((runs, M), rng), pf.FixedTarget(1.4)
+    run = lab.track(lab.film[:200], bel, motion, pf.Position(sigma), rng, **options)
+    return run.error[first:].mean(axis=0)
+
+
+PLAIN, WEIGHTED, RESAMPLED = {"scheme": None, "weighted": False}, {"scheme": None}, {}
+
+
+@three_filters.wrong("""resamples in all three cases
     Your first two errors are as small as the third.
     scheme=None switches resampling off.
-    Pass scheme=None for the first two.""")(
-    lambda rng, runs: np.tile(three_filters(rng, runs)[2], (3, 1)),
-    when=lambda x: x[:, 0].mean() < 2 and x[:, 1].mean() < 2,
-)
-three_filters.wrong("""weights-ignored: ignores the weights in the second case, too
+    Pass scheme=None for the first two.""")
+def always_resampled(M, sigma, rng, runs):
+    return np.array([_errors(M, sigma, rng, runs) for _ in range(3)])
+
+
+@three_filters.wrong("""ignores the weights in the second case, too
     Your first two errors are alike.
     Without resampling, all that was measured sits in the weights.
-    weighted=False belongs to the first case only.""")(
-    lambda rng, runs: three_filters(rng, runs)[[0, 0, 2]], when=lambda x: x[:, 1].mean() > 100
+    weighted=False belongs to the first case only.""")
+def weights_ignored(M, sigma, rng, runs):
+    return np.array([_errors(M, sigma, rng, runs, **o) for o in (PLAIN, PLAIN, RESAMPLED)])
+
+
+@three_filters.wrong("""weights the first mean, too
+    Your first two errors are alike.
+    A takes the plain mean of its particles.
+    weighted=False for A.""")
+def weights_everywhere(M, sigma, rng, runs):
+    return np.array([_errors(M, sigma, rng, runs, **o) for o in (WEIGHTED, WEIGHTED, RESAMPLED)])
+
+
+@three_filters.wrong("""has its rows in another order
+    Which of the three should be the worst?
+    A: no resampling, plain mean. B: no resampling, weighted mean. C: resampled.
+    Stack the errors as A, B, C.""")
+def another_order(M, sigma, rng, runs):
+    return three_filters(M, sigma, rng, runs)[::-1]
+
+
+@three_filters.wrong("""averages over all 200 frames
+    What does the first frame of C cost, before it has found the ball?
+    The question asks for frames 100 to 200.
+    run.error[100:].mean(axis=0).""")
+def all_frames(M, sigma, rng, runs):
+    options = (PLAIN, WEIGHTED, RESAMPLED)
+    return np.array([_errors(M, sigma, rng, runs, 0, **o) for o in options])
+
+
+@three_filters.wrong("""has 300 particles, whatever it is asked
+    Does your function use M?
+    The check chooses the number of particles.
+    lab.anywhere((runs, M), rng).""")
+def always_300(M, sigma, rng, runs):
+    return three_filters(300, sigma, rng, runs)
+
+
+@three_filters.wrong("""has the sensor sd of the example, whatever it is asked
+    Does your function use sigma?
+    The check chooses the modelled noise of the sensor.
+    pf.Position(sigma).""")
+def always_three(M, sigma, rng, runs):
+    return three_filters(M, 3.0, rng, runs)
+
+
+@three_filters.wrong("""starts around the truth, so no filter has anything to find
+    Where do your particles lie before the first frame?
+    All three filters start anywhere in the image.
+    lab.anywhere((runs, M), rng).""")
+def known_start(M, sigma, rng, runs):
+    rows = []
+    for options in (PLAIN, WEIGHTED, RESAMPLED):
+        bel, motion = lab.around(lab.film.start[:2], (runs, M), rng), pf.FixedTarget(1.4)
+        run = lab.track(lab.film[:200], bel, motion, pf.Position(sigma), rng, **options)
+        rows.append(run.error[100:].mean(axis=0))
+    return np.array(rows)
+
+
+@three_filters.refuses("the three numbers of the text")
+def told(M, sigma, rng, runs):
+    return np.tile([[201.0], [19.8], [0.57]], runs)
+
+
+@three_filters.refuses("the same with scatter")
+def told_with_scatter(M, sigma, rng, runs):
+    return np.abs(told(M, sigma, rng, runs) * (1 + 0.1 * rng.standard_normal((3, runs))))
+
+
+@three_filters.refuses("random in range")
+def guessed(M, sigma, rng, runs):
+    return rng.uniform([[150], [5], [0]], [[250], [60], [1]], (3, runs))
+
+
+three_filters.refuses("half as many particles")(
+    lambda M, sigma, rng, runs: three_filters(M // 2, sigma, rng, runs)
 )
+
+
+@three_filters.refuses("one run, repeated")
+def one_run(M, sigma, rng, runs):
+    return np.repeat(three_filters(M, sigma, rng, 1), runs, axis=1)
+
+
+@three_filters.refuses("makes two filters, and guesses the third")
+def third_guessed(M, sigma, rng, runs):
+    found = [_errors(M, sigma, rng, runs, **o) for o in (PLAIN, WEIGHTED)]
+    return np.array([*found, np.full(runs, 0.57)])
+
+
+@three_filters.refuses("the last frame only")
+def last_frame(M, sigma, rng, runs):
+    options = (PLAIN, WEIGHTED, RESAMPLED)
+    return np.array([_errors(M, sigma, rng, runs, 199, **o) for o in options])
