@@ -158,13 +158,14 @@ q1a = "b"
 
 
 # %% q1b
-def follow(D, rng, runs):
-    """Errors in px, shape (300, runs), with a state of D = 2 or 3 components."""
+def follow(D, wrong, M, rng, runs):
+    """Mean error in px of frames 200 to 300, shape (runs,); the state has D = 2 or 3 components."""
     # BEGIN SOLUTION
-    start = lab.line.start + np.array([0, 0, np.deg2rad(20)])
+    start = lab.line.start + np.array([0, 0, wrong])
     motion = pf.HeadingTarget(0.1, heading=start[2]) if D == 2 else pf.LineTarget(0.1, 0.02)
-    bel = lab.around(start[:D], (runs, 200), rng)
-    return lab.track(lab.line[:300], bel, motion, pf.Position(20.0), rng).error
+    bel = lab.around(start[:D], (runs, M), rng)
+    run = lab.track(lab.line[:300], bel, motion, pf.Position(20.0), rng)
+    return run.error[200:].mean(axis=0)
     # END SOLUTION
 
 
@@ -260,12 +261,12 @@ def survival(w, M):
 
 
 # %% q5c
-def survived(scheme, w, rng, runs):
-    """One True or False per run."""
+def survived(scheme, w, M, rng):
+    """One run: True or False."""
     # BEGIN SOLUTION
-    weights = np.full(100, (1 - w) / 99)
+    weights = np.full(M, (1 - w) / (M - 1))
     weights[0] = w
-    return np.array([0 in scheme(weights, rng) for _ in range(runs)])
+    return 0 in scheme(weights, rng)
     # END SOLUTION
 
 
@@ -286,11 +287,11 @@ q7a = ("b", 70)
 
 
 # %% q7b
-def collapse(sigma, rng, runs):
+def collapse(sigma, M, frames, rng, runs):
     """Distinct particles and last ESS: shape (2, runs)."""
     # BEGIN SOLUTION
-    bel = lab.around(lab.film.start[:2], (runs, 100), rng, sigma=20.0)
-    run = lab.track(lab.film[:400], bel, pf.FixedTarget(sigma), pf.Position(3.0), rng)
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=20.0)
+    run = lab.track(lab.film[:frames], bel, pf.FixedTarget(sigma), pf.Position(3.0), rng)
     distinct = [len(np.unique(x)) for x in run.bel.state[0]]
     return np.array([distinct, run.ess[-1]])
     # END SOLUTION
@@ -304,13 +305,14 @@ q8a = ("b", 60)
 
 
 # %% q8b
-def three_filters(rng, runs):
+def three_filters(M, sigma, rng, runs):
     """Mean errors in px of A, B, C: shape (3, runs)."""
     # BEGIN SOLUTION
     rows = []
     for options in ({"scheme": None, "weighted": False}, {"scheme": None}, {}):
-        bel = lab.anywhere((runs, 300), rng)
-        run = lab.track(lab.film[:200], bel, pf.FixedTarget(1.4), pf.Position(3.0), rng, **options)
+        bel = lab.anywhere((runs, M), rng)
+        motion, sensor = pf.FixedTarget(1.4), pf.Position(sigma)
+        run = lab.track(lab.film[:200], bel, motion, sensor, rng, **options)
         rows.append(run.error[100:].mean(axis=0))
     return np.array(rows)
     # END SOLUTION

@@ -19,8 +19,8 @@ LINE = target_log("line", "high")
 
 def _headings(rng):
     """Both models with few particles and a small error, and with many and a large one."""
-    small, large = rng.choice([-1, 1], 2) * np.deg2rad(rng.uniform([12, 25], [18, 35]))
-    few, many = int(rng.integers(6, 11)), int(rng.integers(100, 141))
+    small, large = rng.choice([-1, 1], 2) * np.deg2rad(rng.uniform([12, 35], [18, 50]))
+    few, many = int(rng.integers(6, 11)), int(rng.integers(60, 91))
     return [(D, float(a), M) for a, M in ((small, few), (large, many)) for D in (2, 3)]
 
 
