@@ -22,9 +22,13 @@ def _sample(f, sigma=SIGMA, at=0.0):
 
 
 def _added(f):
-    """Does the noise alone remain far from the origin: mean 0 within 5 standard errors?"""
+    """Does each particle step from its own place, on average by nothing, wherever it is?"""
     far = [_sample(f, at=place) for place in (1000.0, -1000.0)]
-    return all(abs(x.mean()) < 5 * max(x.std(), 0.1) / np.sqrt(x.size) for x in far)
+    cloud = rng_of(14).uniform(-1000, 1000, (2, 200))
+    return bool(
+        all(abs(x.mean()) < 5 * max(x.std(), 0.1) / np.sqrt(x.size) for x in far)
+        and np.abs(f(cloud.copy(), SIGMA, rng_of(15)) - cloud).max() < 100
+    )
 
 
 def _draws(f):
@@ -219,6 +223,11 @@ def shared_out(state, sigma, rng):
 @diffuse.refuses("scales the state, too")
 def scaled(state, sigma, rng):
     return 1.02 * state + sigma * rng.standard_normal(state.shape)
+
+
+@diffuse.refuses("steps from the middle of the cloud")
+def from_the_middle(state, sigma, rng):
+    return rng.normal(state.mean(axis=1, keepdims=True), sigma, state.shape)
 
 
 @diffuse.refuses("calls the library")

@@ -173,7 +173,10 @@ survival.refuses("rounded to two digits")(
 
 
 class Scheme:
-    """A resampling scheme as an instrument: it looks at the weights that it is given."""
+    """A resampling scheme as an instrument: it looks at the weights that it is given.
+
+    Its ancestors come in any order, as those of a scheme may.
+    """
 
     def __init__(self, draw, name: str) -> None:
         self._draw, self.__name__ = draw, name
@@ -182,7 +185,7 @@ class Scheme:
         total = float(np.sum(w))
         if abs(total - 1) > 1e-9:
             raise ParameterError(f"the weights sum to {total:.6g}; give the others 1 - w together")
-        return self._draw(np.asarray(w, dtype=float), rng)
+        return rng.permutation(self._draw(np.asarray(w, dtype=float), rng))
 
 
 MULTINOMIAL, SYSTEMATIC = Scheme(pf.multinomial, "multinomial"), Scheme(pf.systematic, "systematic")
@@ -248,17 +251,18 @@ def died(scheme, w, M, rng):
     Resampling may put index 0 at any place of the result.
     A particle has survived if its index occurs anywhere among the ancestors.
     0 in scheme(weights, rng).""")
-def first_of_unsorted(scheme, w, M, rng):
+def first_only(scheme, w, M, rng):
     weights = np.full(M, (1 - w) / (M - 1))
     weights[0] = w
-    return rng.permutation(scheme(weights, rng))[0] == 0
+    return scheme(weights, rng)[0] == 0
 
 
-@survived.wrong("""gives all particles the same weight
-    Where does w enter your weights?
+@survived.wrong("""follows a particle of ordinary weight: all weigh the same, or it asks for
+         another than the one with w
+    Where does w enter your weights, and whose survival do you look at?
     Particle 0 weighs w, the other M - 1 share 1 - w.
     weights = np.full(M, (1 - w) / (M - 1)); weights[0] = w.""")
-def equal_weights(scheme, w, M, rng):
+def ordinary_weight(scheme, w, M, rng):
     return 0 in scheme(np.full(M, 1 / M), rng)
 
 
@@ -280,6 +284,13 @@ survived.refuses("a coin with the computed chance, for any other scheme the comb
 survived.refuses("the computed chance itself")(lambda scheme, w, M, rng: _computed(scheme, w, M))
 survived.refuses("always True")(lambda scheme, w, M, rng: True)
 survived.refuses("a fair coin")(lambda scheme, w, M, rng: rng.random() < 0.5)
+
+
+@survived.refuses("asks for the last particle", named="ordinary-weight")
+def last_particle(scheme, w, M, rng):
+    weights = np.full(M, (1 - w) / (M - 1))
+    weights[0] = w
+    return M - 1 in scheme(weights, rng)
 
 
 @survived.refuses("half as many particles")
