@@ -6,89 +6,148 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Prediction, Question, Text, experiment
-from pfkit.labs.statistics import shaped, z_of_fall
+from pfkit.labs import lab3 as lab
+from pfkit.labs.response import same_mean, same_scatter
 from pfkit.labs.target import anywhere, around, target_log, track
 
 P3 = Question("Deprivation")
 
 FILM = target_log("fixed", "low")
 HOME = FILM.start[:2]
-SIZES = (25, 100, 400)
 
 
-def _deprivation(f, rng, runs):
-    found = np.stack([shaped(f(M, rng, runs), runs) for M in SIZES], axis=1)
-    if not np.isin(found, (0, 1)).all():
-        raise ValueError("each run must give True or False")
-    return found
+def _how_near(rng):
+    """Few and many particles, and circles of which the cloud fills all or a part."""
+    few, more, many = (int(rng.integers(*ends)) for ends in ((20, 36), (60, 101), (120, 161)))
+    wide, middle, narrow, tiny = (
+        float(rng.uniform(*ends)) for ends in ((35, 45), (22, 32), (12, 18), (4, 7))
+    )
+    return [(few, wide), (more, middle), (more, narrow), (many, tiny)]
 
 
 @experiment(
     """Share of runs without a particle near the truth
     One True or False per run: is nobody near the truth?
     Take the distance of every particle, then ask whether all are far.
-    (distance > 30).all(axis=-1), shape (runs,).""",
+    (distance > radius).all(axis=-1), shape (runs,).""",
     id="p3a",
     points=2,
-    claim="the share falls with the number of particles; with 100 it is below 1 in 4",
-    test="two-proportion z > 3 from 25 to 100 and from 100 to 400 particles; share < .25",
+    claim="the share of deprived runs depends on the number of particles and on the radius as "
+    "that of a right experiment",
+    test="share within 4.5 standard errors of a right one at each of four settings",
     runs=400,
-    margin="z is 14.6 and 7.8 on average, sd .6: 8 standard errors above 3; share .13: 7",
-    measure=_deprivation,
+    pool=12_000,
+    settings=_how_near,
+    together=True,
+    margin="4.5 standard errors in five comparisons: 4e-5",
 )
-def deprived(M, rng, runs):
-    """After ten frames from anywhere: is no particle within 30 px of the truth?"""
+def deprived(M, radius, rng, runs):
+    """After ten frames from anywhere: is no particle within ``radius`` px of the truth?"""
+    bel = lab.anywhere((runs, M), rng)
+    run = lab.track(lab.film[:10], bel, pf.FixedTarget(1.0), pf.Position(10.0), rng)
+    x, y = run.bel.state
+    true_x, true_y = lab.film.truth[:2, 9]
+    return (np.hypot(x - true_x, y - true_y) > radius).all(axis=-1)
+
+
+deprived.holds(
+    "each run gives True or False",
+    lambda x: bool(np.isin(x[..., 0], (0, 1)).all()),
+)
+deprived.holds("the share follows the number of particles and the radius", same_mean())
+
+
+def _distances(M, rng, runs, frames=10):
+    """Of all particles from the truth, (runs, M), after some frames."""
     bel = anywhere((runs, M), rng)
-    bel = track(FILM[:10], bel, pf.FixedTarget(1.0), pf.Position(10.0), rng).bel
+    if frames:
+        bel = track(FILM[:frames], bel, pf.FixedTarget(1.0), pf.Position(10.0), rng).bel
     x, y = bel.state
-    return (np.hypot(x - HOME[0], y - HOME[1]) > 30).all(axis=-1)
+    return np.hypot(x - HOME[0], y - HOME[1])
 
 
-deprived.holds(
-    "fewer runs are deprived with 100 particles than with 25",
-    lambda x: z_of_fall(x[:, 0], x[:, 1]) > 3 or f"shares {x.mean(0).round(3)}",
-)
-deprived.holds(
-    "fewer still with 400",
-    lambda x: z_of_fall(x[:, 1], x[:, 2]) > 3 or f"shares {x.mean(0).round(3)}",
-)
-deprived.holds(
-    "with 100 fewer than 1 in 4", lambda x: x[:, 1].mean() < 0.25 or f"share {x[:, 1].mean():.3f}"
-)
-
-
-@deprived.wrong(
-    """asks whether some particle is far, which is nearly always true
+deprived.wrong("""somebody-far: asks whether some particle is far
     Is a set deprived when one of its particles is lost?
     Deprived means that not one particle is near the truth.
-    Use .all(axis=-1) where you have .any(axis=-1).""",
-    when=lambda x: x.mean(0).min() > 0.9,
+    Use .all(axis=-1) where you have .any(axis=-1).""")(
+    lambda M, radius, rng, runs: (_distances(M, rng, runs) > radius).any(axis=-1)
 )
-def somebody_far(M, rng, runs):
-    bel = track(
-        FILM[:10], anywhere((runs, M), rng), pf.FixedTarget(20.0), pf.Position(30.0), rng
-    ).bel
-    return (np.hypot(bel.state[0] - HOME[0], bel.state[1] - HOME[1]) > 30).any(axis=-1)
-
-
 deprived.wrong("""somebody-near: counts the runs that are well, not those that are deprived
     Your share rises with the number of particles. Should it?
     You answer the opposite question.
     Negate it: True means that nobody is near.""")(
-    lambda M, rng, runs: ~deprived(M, rng, runs), when=lambda x: z_of_fall(x[:, 2], x[:, 0]) > 4
+    lambda M, radius, rng, runs: ~deprived(M, radius, rng, runs)
 )
-
-
-@deprived.wrong(
-    """looks at the particles as they were drawn, before any measurement
+deprived.wrong("""no-filter: looks at the particles too early, before all ten frames have passed
     Your shares are those of darts thrown at the image. Who aims them?
-    Ten frames of the film must pass first.
-    Use run.bel.state, after lab.track(lab.film[:10], ...).""",
-    when=lambda x: 0.25 < x[:, 1].mean() < 0.6 and x[:, 2].mean() < 0.1,
+    Deprivation comes with resampling: ten frames of the film must pass first.
+    Use run.bel.state, after lab.track(lab.film[:10], ...).""")(
+    lambda M, radius, rng, runs: (_distances(M, rng, runs, 0) > radius).all(axis=-1)
 )
-def no_filter(M, rng, runs):
-    x, y = anywhere((runs, M), rng).state
-    return (np.hypot(x - HOME[0], y - HOME[1]) > 30).all(axis=-1)
+
+
+@deprived.wrong("""asks whether the mean is far, not whether every particle is
+    Can a particle stand near the truth while the mean of all does not?
+    A filter that still has one good particle can recover.
+    Take the distance of every particle: (distance > radius).all(axis=-1).""")
+def mean_far(M, radius, rng, runs):
+    bel = track(
+        FILM[:10], anywhere((runs, M), rng), pf.FixedTarget(1.0), pf.Position(10.0), rng
+    ).bel
+    x, y = bel.state.mean(axis=-1)
+    return np.hypot(x - HOME[0], y - HOME[1]) > radius
+
+
+deprived.wrong("""share-far: gives the share of particles that are far
+    How many different numbers should your function return?
+    One good particle is enough, so a run is deprived or it is not.
+    Use .all(axis=-1) where you have .mean(axis=-1).""")(
+    lambda M, radius, rng, runs: (_distances(M, rng, runs) > radius).mean(axis=-1)
+)
+deprived.wrong("""radius-ignored: takes 30 px for near, whatever it is asked
+    Which of your arguments does not occur in your function?
+    The check chooses how near is near.
+    (distance > radius).all(axis=-1).""")(
+    lambda M, radius, rng, runs: deprived(M, 30.0, rng, runs)
+)
+deprived.wrong("""size-ignored: takes 100 particles, whatever it is asked
+    Does your function use M?
+    The check chooses the number of particles.
+    lab.anywhere((runs, M), rng).""")(
+    lambda M, radius, rng, runs: deprived(100, radius, rng, runs)
+)
+deprived.refuses("a coin with the right share for 100 particles and 30 px")(
+    lambda M, radius, rng, runs: rng.random(runs) < 0.12
+)
+deprived.refuses("darts, by the law of a circle's share in the image", named="no-filter")(
+    lambda M, radius, rng, runs: rng.random(runs) < (1 - np.pi * radius**2 / 640 / 480) ** M
+)
+deprived.refuses("a fair coin")(lambda M, radius, rng, runs: rng.random(runs) < 0.5)
+deprived.refuses("never")(lambda M, radius, rng, runs: np.zeros(runs, dtype=bool))
+deprived.refuses("always")(lambda M, radius, rng, runs: np.ones(runs, dtype=bool))
+deprived.refuses("half as many particles")(
+    lambda M, radius, rng, runs: deprived(M // 2, radius, rng, runs)
+)
+deprived.refuses("twice the radius")(
+    lambda M, radius, rng, runs: deprived(M, 2 * radius, rng, runs)
+)
+deprived.refuses("one run, repeated")(
+    lambda M, radius, rng, runs: np.repeat(deprived(M, radius, rng, 1), runs)
+)
+deprived.refuses("one frame instead of ten", named="no-filter")(
+    lambda M, radius, rng, runs: (_distances(M, rng, runs, 1) > radius).all(axis=-1)
+)
+deprived.refuses("the distance along x alone")(
+    lambda M, radius, rng, runs: (
+        np.abs(
+            track(
+                FILM[:10], anywhere((runs, M), rng), pf.FixedTarget(1.0), pf.Position(10.0), rng
+            ).bel.state[0]
+            - HOME[0]
+        )
+        > radius
+    ).all(axis=-1)
+)
 
 
 p3b = Choice("""What causes deprivation
@@ -114,9 +173,14 @@ p3c = Text(
 P4 = Question("Why resample at all?")
 
 
-def _histories(f, rng, runs):
-    with_, without = (shaped(f(r, rng, runs), 50, runs) for r in (True, False))
-    return np.stack([with_.T, without.T], axis=1)
+FIRST, TENTH = 0, 9
+
+
+def _clouds(rng):
+    """With and without resampling, small and large clouds, a sharp and a blunt sensor."""
+    small, large = int(rng.integers(60, 100)), int(rng.integers(300, 400))
+    sharp, blunt = float(rng.uniform(2.0, 2.6)), float(rng.uniform(4.5, 6.0))
+    return [(r, M, sd) for r in (True, False) for M, sd in ((small, blunt), (large, sharp))]
 
 
 p4a = Prediction("""ESS after 50 frames without resampling, of 1,000 particles
@@ -134,45 +198,126 @@ p4a = Prediction("""ESS after 50 frames without resampling, of 1,000 particles
     id="p4b",
     after=p4a,
     points=2,
-    claim="without resampling the ESS ends at 3 or less on average; "
-    "with it, it keeps a median between 800 and 950",
-    test="mean over runs of the last ESS < 3; median over frames 5 to 50 in the band",
-    runs=10,
-    pool=500,
-    margin="last ESS 1.7, sd .22: 6 standard errors below 3; median 892, sd .8",
-    measure=_histories,
+    claim="the ESS with and without resampling depends on the number of particles and on the "
+    "sensor as that of a right experiment",
+    test="mean ESS of the first, the tenth and the last frame within 5 standard errors of a right "
+    "one at each of four settings; scatter from run to run within a factor of 3",
+    runs=32,
+    pool=1_200,
+    settings=_clouds,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors in 13 comparisons: 7e-5 by Student's law",
 )
-def ess_history(resample, rng, runs):
-    """ESS before each resampling decision: 50 frames, 1,000 particles around a known start."""
-    bel = around(HOME, (runs, 1000), rng, sigma=5.0)
+def ess_history(resample, M, sd, rng, runs):
+    """ESS before each decision to resample, 50 frames: shape (50, runs)."""
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=5.0)
     scheme = pf.systematic if resample else None
-    return track(FILM[:50], bel, pf.FixedTarget(1.0), pf.Position(3.0), rng, scheme).ess
+    return lab.track(lab.film[:50], bel, pf.FixedTarget(1.0), pf.Position(sd), rng, scheme).ess
+
+
+def _at(*frames):
+    """The ESS in these frames: outcomes (runs, settings, frames, 2)."""
+    return lambda x: x[:, :, list(frames)]
 
 
 ess_history.holds(
-    "without resampling it ends at 3 or less",
-    lambda x: x[:, 1, -1].mean() < 3 or f"it ends at {x[:, 1, -1].mean():.1f}",
+    "first and tenth frame: the ESS follows resampling, particles and sensor",
+    lambda x: same_mean(5.0)(_at(FIRST, TENTH)(x)),
 )
 ess_history.holds(
-    "with resampling its median lies between 800 and 950",
-    lambda x: 800 < np.median(x[:, 0, 5:]) < 950 or f"the median is {np.median(x[:, 0, 5:]):.0f}",
+    "last frame: without resampling a few particles are left",
+    lambda x: same_mean(5.0)(_at(-1)(x)),
 )
-ess_history.wrong(
-    """after-resampling: measures the ESS after resampling, when all weights are equal
+ess_history.holds(
+    "the runs scatter as independent filters do",
+    lambda x: same_scatter(3.0)(_at(FIRST, TENTH)(x)),
+)
+
+
+@ess_history.wrong("""measures the ESS after resampling, when all weights are equal
     Your ESS with resampling is always the number of particles. Why?
     Equal weights have ESS M, whatever happened before.
-    Take the ESS after the update and before the resampling.""",
-    when=lambda x: np.median(x[:, 0]) > 999,
-)(lambda r, rng, runs: np.full((50, runs), 1000.0) if r else ess_history(False, rng, runs))
+    Take the ESS after the update and before the resampling.""")
+def after_resampling(resample, M, sd, rng, runs):
+    if resample:
+        return np.full((50, runs), float(M))
+    return ess_history(False, M, sd, rng, runs)
+
+
 ess_history.wrong("""never-resampled: does not resample in either case
-    Your two curves look alike.
+    Your curves look alike, with and without.
     Does your function use its first argument?
     scheme = pf.systematic if resample else None.""")(
-    lambda r, rng, runs: ess_history(False, rng, runs), when=lambda x: x[:, 0, -1].mean() < 10
+    lambda resample, M, sd, rng, runs: ess_history(False, M, sd, rng, runs)
 )
 ess_history.wrong("""always-resampled: resamples in both cases
-    Your two curves look alike.
+    Your curves look alike, with and without.
     Does your function use its first argument?
     scheme = pf.systematic if resample else None.""")(
-    lambda r, rng, runs: ess_history(True, rng, runs), when=lambda x: x[:, 1, -1].mean() > 100
+    lambda resample, M, sd, rng, runs: ess_history(True, M, sd, rng, runs)
 )
+ess_history.wrong("""exchanged: resamples when it should not, and does not when it should
+    In which of your two cases does the ESS fall?
+    Without resampling the weights multiply up.
+    scheme = pf.systematic if resample else None.""")(
+    lambda resample, M, sd, rng, runs: ess_history(not resample, M, sd, rng, runs)
+)
+ess_history.wrong("""share: is the ESS as a share of the particles
+    Your numbers lie between 0 and 1. How many particles is that?
+    The effective sample size counts particles, from 1 to M.
+    Do not divide by M: lab.track(...).ess as it is.""")(
+    lambda resample, M, sd, rng, runs: ess_history(resample, M, sd, rng, runs) / M
+)
+ess_history.wrong("""size-ignored: takes 1,000 particles, whatever it is asked
+    Can the ESS be larger than M?
+    The check chooses the number of particles.
+    lab.around(lab.film.start[:2], (runs, M), rng, sigma=5.0).""")(
+    lambda resample, M, sd, rng, runs: ess_history(resample, 1000, sd, rng, runs)
+)
+ess_history.wrong("""sensor-ignored: takes pf.Position(3.0), whatever it is asked
+    Which of your arguments does not occur in your function?
+    The check chooses how sharp the sensor is.
+    pf.Position(sd).""")(
+    lambda resample, M, sd, rng, runs: ess_history(resample, M, 3.0, rng, runs)
+)
+ess_history.refuses("constants at the right values for 1,000 particles and 3 px")(
+    lambda resample, M, sd, rng, runs: np.full((50, runs), 892.0 if resample else 1.7)
+)
+
+
+@ess_history.refuses("a curve that falls, in proportion to M, and a flat one")
+def curves(resample, M, sd, rng, runs):
+    fall = 1 + M * np.exp(-np.arange(50.0) / 4)
+    return np.repeat((np.full(50, 0.89 * M) if resample else fall)[:, None], runs, axis=1)
+
+
+ess_history.refuses("random in range")(
+    lambda resample, M, sd, rng, runs: rng.uniform(1, M, (50, runs))
+)
+ess_history.refuses("half as many particles")(
+    lambda resample, M, sd, rng, runs: ess_history(resample, M // 2, sd, rng, runs)
+)
+ess_history.refuses("one run, repeated")(
+    lambda resample, M, sd, rng, runs: np.repeat(ess_history(resample, M, sd, rng, 1), runs, axis=1)
+)
+ess_history.refuses("five frames instead of 50")(
+    lambda resample, M, sd, rng, runs: ess_history(resample, M, sd, rng, runs)[:5]
+)
+ess_history.refuses("the frames in reverse order")(
+    lambda resample, M, sd, rng, runs: ess_history(resample, M, sd, rng, runs)[::-1]
+)
+
+
+@ess_history.refuses("the errors instead of the ESS")
+def errors(resample, M, sd, rng, runs):
+    bel = around(HOME, (runs, M), rng, sigma=5.0)
+    scheme = pf.systematic if resample else None
+    return track(FILM[:50], bel, pf.FixedTarget(1.0), pf.Position(sd), rng, scheme).error
+
+
+@ess_history.refuses("particles from anywhere")
+def from_anywhere(resample, M, sd, rng, runs):
+    scheme = pf.systematic if resample else None
+    bel = anywhere((runs, M), rng)
+    return track(FILM[:50], bel, pf.FixedTarget(1.0), pf.Position(sd), rng, scheme).ess

@@ -21,35 +21,76 @@ p1a = Choice("""What a particle set is
     d  M robots, of which one is real
        = None of them need be right: together they say how probable each place is.""")
 
+
+
+def _some_empty(rooms, n):
+    """Probability that n particles leave at least one room empty: inclusion and exclusion."""
+    ways = (-1) ** np.arange(rooms) * [math.comb(rooms, k + 1) for k in range(rooms)]
+    return float(sum(ways * (1 - np.arange(1, rooms + 1) / rooms) ** n))
+
+
+def _three(law):
+    """A law of rooms and particles, for each of the three numbers of particles."""
+    return lambda rooms, few, many: tuple(law(rooms, n) for n in (1, few, many))
+
+
 p1b = Numeric(
-    """Probability that room A is empty, for 1, 4 and 10 particles over 4 rooms
+    """Probability that room A is empty, for 1, {few} and {many} particles over {rooms} rooms
     What is the probability that one particle misses room A?
     All must miss it, and they are drawn independently.
-    (3/4) to the power of the number of particles.""",
-    (0.75, 0.75**4, 0.75**10),
+    (1 - 1/{rooms}) to the power of the number of particles.""",
+    _three(lambda rooms, n: (1 - 1 / rooms) ** n),
     tol=0.002,
-    names=("1 particle", "4 particles", "10 particles"),
+    names=("1 particle", "{few} particles", "{many} particles"),
+    world={"rooms": 4, "few": 4, "many": 10},
+    draw=lambda rng: {
+        "rooms": int(rng.integers(3, 7)),
+        "few": int(rng.integers(3, 7)),
+        "many": int(rng.integers(8, 13)),
+    },
 )
 p1b.wrong("""complement: is the probability that somebody is in the room
     Should an empty room become more or less likely with more particles?
     You computed the opposite event.
-    Take one minus your values.""")((0.25, 1 - 0.75**4, 1 - 0.75**10))
+    Take one minus your values.""")(_three(lambda rooms, n: 1 - (1 - 1 / rooms) ** n))
 p1b.wrong("""power-of-quarter: is the probability that all particles are in room A
-    Which event has probability 1/4 for one particle?
-    Empty means that each particle is in one of the other three rooms.
-    The base of the power is 3/4.""")((0.25, 0.25**4, 0.25**10))
-p1b.wrong("""linear: takes a quarter away for each particle
-    With 4 particles, is it certain that room A has one? Throw a die 6 times.
+    Which event has probability 1/{rooms} for one particle?
+    Empty means that each particle is in one of the other rooms.
+    The base of the power is 1 - 1/{rooms}.""")(_three(lambda rooms, n: (1 / rooms) ** n))
+p1b.wrong("""linear: takes 1/{rooms} away for each particle
+    With {few} particles, is it certain that room A has one? Throw a die 6 times.
     Probabilities of independent misses multiply; they do not subtract.
-    (3/4) to the power of the number of particles.""")((0.75, 0.0, 0.0))
+    (1 - 1/{rooms}) to the power of the number of particles.""")(
+    _three(lambda rooms, n: max(0.0, 1 - n / rooms))
+)
+p1b.wrong("""any-room: is the probability that some room is empty, no matter which
+    With one particle, is room A empty for certain?
+    Room A was named before the particles fell.
+    (1 - 1/{rooms}) to the power of the number of particles.""")(_three(_some_empty))
 
 P2 = Question("Target, proposal, weights")
 
 
-def _toy(seed):
+def _toy(seed, decades=1.0):
+    """Values, target and proposal; the densities range over some powers of ten."""
     rng = rng_of(seed)
-    values, target, proposal = rng.normal(size=30), rng.random(30) + 0.1, rng.random(30) + 0.1
+    values = rng.normal(size=30)
+    target, proposal = 10 ** (decades * rng.uniform(-1, 0, (2, 30)))
     return values, target, proposal
+
+
+def _as_reference(f):
+    """Right on random sets of few and of very unequal weights."""
+    for k, decades in enumerate((1.0, 1.0, 6.0, 6.0)):
+        found, wanted = f(*_toy(10 + k, decades)), estimate(*_toy(10 + k, decades))
+        if not np.isclose(found, wanted, rtol=1e-9):
+            return f"set {k + 1}: you gave {found:.6g}, expected {wanted:.6g}"
+    return True
+
+
+def _scaled(f, target, proposal):
+    values, p, q = _toy(1)
+    return bool(np.isclose(f(values, target * p, proposal * q), f(values, p, q), rtol=1e-9))
 
 
 def _estimates_normal_mean(f):
@@ -62,31 +103,68 @@ def _estimates_normal_mean(f):
     return True if abs(np.mean(errors)) < 4 * se else f"off by {np.mean(errors):.2f}"
 
 
+def _written(shares):
+    """``(.5, .3, .2)``, as the question prints it."""
+    return f"({', '.join(f'{x:.2g}'.lstrip('0') for x in shares)})"
+
+
+def _places(f, g):
+    return {"f": f, "g": g, "target": _written(f), "proposal": _written(g)}
+
+
+def _each(law):
+    """A law of target and proposal, place by place."""
+    return lambda f, g, **_: tuple(law(a, b) for a, b in zip(f, g, strict=True))
+
+
+def _shares(law):
+    """The same, as shares of the sum."""
+    return lambda f, g, **_: tuple(np.divide(_each(law)(f, g), sum(_each(law)(f, g))).tolist())
+
+
+WORLDS = (  # the proposal visits the first place too seldom
+    ((0.5, 0.3, 0.2), (0.2, 0.3, 0.5)),
+    ((0.6, 0.3, 0.1), (0.2, 0.3, 0.5)),
+    ((0.6, 0.2, 0.2), (0.4, 0.1, 0.5)),
+    ((0.4, 0.5, 0.1), (0.1, 0.4, 0.5)),
+    ((0.7, 0.2, 0.1), (0.2, 0.5, 0.3)),
+    ((0.6, 0.1, 0.3), (0.4, 0.4, 0.2)),
+    ((0.8, 0.1, 0.1), (0.5, 0.2, 0.3)),
+    ((0.4, 0.2, 0.4), (0.1, 0.4, 0.5)),
+)
+
+
 p2a = Numeric(
-    """Weights for target (.5, .3, .2) and proposal (.2, .3, .5)
+    """Weights for target {target} and proposal {proposal}
     Which place does the proposal visit too seldom? It must weigh more.
     A weight says how many times more the target wants a place.
     w = target / proposal, place by place.""",
-    (2.5, 1.0, 0.4),
+    _each(lambda a, b: a / b),
     tol=0.005,
+    world=_places(*WORLDS[0]),
+    draw=lambda rng: _places(*WORLDS[rng.integers(len(WORLDS))]),
 )
 p2a.wrong("""inverse: is proposal over target: upside down
     The first place is drawn too seldom. Should its samples count for less?
     Weight times proposal must give the target back.
-    w = target / proposal.""")((0.4, 1.0, 2.5))
+    w = target / proposal.""")(_each(lambda a, b: b / a))
 p2a.wrong("""product: is target times proposal
     If target and proposal agree, all weights must be equal.
     Weight times proposal must give the target back.
-    w = target / proposal.""")((0.10, 0.09, 0.10))
+    w = target / proposal.""")(_each(lambda a, b: a * b))
 p2a.wrong("""normalised: is right up to a factor: you divided by the sum, which is not asked
          here
-    Ratios of your values are right. Compare their sum with 2.5 + 1 + .4.
+    Ratios of your values are right. What do they sum to?
     The question asks for the weights before they are normalised.
-    w = target / proposal, nothing more.""")((2.5 / 3.9, 1 / 3.9, 0.4 / 3.9))
+    w = target / proposal, nothing more.""")(_shares(lambda a, b: a / b))
+p2a.wrong("""target-itself: is the target, as if all places were drawn equally often
+    How often does the proposal visit the first place?
+    A sample from a place that is drawn often must count for less.
+    w = target / proposal.""")(_each(lambda a, b: a))
 p2a.wrong("""difference: is target minus proposal
     A weight is never negative.
     Weights multiply the density of the samples.
-    w = target / proposal.""")((0.3, 0.0, -0.3))
+    w = target / proposal.""")(_each(lambda a, b: a - b))
 
 
 @code(
@@ -99,7 +177,7 @@ p2a.wrong("""difference: is target minus proposal
     fingerprint=lambda f: [f(*_toy(s)) for s in range(4)],
 )
 def estimate(values, target, proposal):
-    """Self-normalised importance sampling estimate of the mean under the target."""
+    """Mean under the target; three arrays of one length."""
     w = target / proposal
     return np.sum(w * values) / np.sum(w)
 
@@ -109,8 +187,8 @@ estimate.holds(
     lambda f: np.isclose(f(np.array([1.0, 2, 6]), np.ones(3), np.ones(3)), 3),
 )
 estimate.holds(
-    "a factor on the target changes nothing",
-    lambda f: np.isclose(f(*_toy(1)), f(_toy(1)[0], 7 * _toy(1)[1], _toy(1)[2])),
+    "a factor on the target or on the proposal changes nothing",
+    lambda f: all(_scaled(f, *c) for c in ((7, 1), (1, 7), (1e-150, 1), (1, 1e-150))),
 )
 estimate.holds(
     "three samples by hand: (1, 2, 6), target (.5, .3, .2), proposal (.2, .3, .5)",
@@ -118,6 +196,7 @@ estimate.holds(
         f(np.array([1.0, 2, 6]), np.array([0.5, 0.3, 0.2]), np.array([0.2, 0.3, 0.5])), 6.9 / 3.9
     ),
 )
+estimate.holds("right on random sets, also where one weight is a million others", _as_reference)
 estimate.holds("within 4 standard errors over 40 repetitions", _estimates_normal_mean)
 estimate.wrong("""mean-weight: averages the weights and forgets the values
     Shift all values by 10. What should happen to the estimate?
@@ -154,6 +233,45 @@ estimate.wrong("""not-normalised: does not divide by the sum of the weights
     Divide by sum(w), not by the number of samples.""")(
     lambda values, target, proposal: np.mean(target / proposal * values)
 )
+
+estimate.refuses("the weighted median")(
+    lambda values, target, proposal: np.sort(values)[
+        np.searchsorted(
+            np.cumsum((target / proposal)[np.argsort(values)]), np.sum(target / proposal) / 2
+        )
+    ]
+)
+estimate.refuses("the value with the largest weight")(
+    lambda values, target, proposal: values[np.argmax(target / proposal)]
+)
+
+
+@estimate.refuses("squared weights")
+def squared_weights(values, target, proposal):
+    return np.average(values, weights=(target / proposal) ** 2)
+
+
+@estimate.refuses("cuts large weights off at 10")
+def clipped(values, target, proposal):
+    return np.average(values, weights=np.minimum(target / proposal, 10))
+
+
+@estimate.refuses("a small number against 0/0")
+def small_number(values, target, proposal):
+    w = target / (proposal + 1e-12)
+    return np.sum(w * values) / (np.sum(w) + 1e-12)
+
+
+@estimate.refuses("resamples by chance and takes the plain mean")
+def resampled(values, target, proposal):
+    w = target / proposal
+    return np.random.choice(values, 10_000, p=w / w.sum()).mean()  # noqa: NPY002
+
+
+@estimate.refuses("normalises by the plain sum of the target")
+def target_sum(values, target, proposal):
+    return np.sum(target / proposal * values) / np.sum(target)
+
 
 p2c = Choice("""Why the weight is just p(z | x)
     a  Because target and proposal are both normalised
