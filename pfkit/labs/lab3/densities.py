@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 from pfkit.labs import Question, code, experiment
@@ -12,39 +10,56 @@ from pfkit.labs.statistics import rng_of, shaped
 P6 = Question("Inference between the particles")
 
 
-def _normal(x, samples):
-    """Density at x of the Gaussian with the mean and the sd of samples."""
-    mu, sd = samples.mean(), samples.std()
-    return np.exp(-0.5 * ((x - mu) / sd) ** 2) / (sd * np.sqrt(2 * np.pi))
-
-
-def _two_normals(x, samples):
-    """Samples cut at their mean: each part is one hill, with its share, mean and sd."""
-    parts = (samples[samples < samples.mean()], samples[samples >= samples.mean()])
-    return sum(part.size / samples.size * _normal(x, part) for part in parts)
-
-
-def bimodal_cloud(rng: np.random.Generator, n: int = 100) -> np.ndarray:
-    """n numbers, about half near -4 and half near +4, sd 1, within (-15, 15)."""
-    return np.where(rng.random(n) < 0.5, -4.0, 4.0) + rng.standard_normal(n)
-
-
 NAMES = ("Gaussian", "histogram", "KDE", "mixture")
+AS_GOOD = np.array([0.005, 0.001, 0.001, 0.02])  # nats: an sd may divide by n or by n - 1
 
 
-def _ranked(f, rng, runs):
-    clouds = [(bimodal_cloud(rng), bimodal_cloud(rng)) for _ in range(runs)]
-    found = np.stack([shaped(f(train, test), 4) for train, test in clouds])
-    if not np.isfinite(found).all():
-        name = NAMES[int((~np.isfinite(found)).any(axis=0).argmax())]
+def bimodal_cloud(
+    rng: np.random.Generator, n: int, hills: tuple[float, float], share: float, sd: float
+) -> np.ndarray:
+    """n numbers, a share of them near the first hill and the rest near the second."""
+    where = np.where(rng.random(n) < share, *hills)
+    return np.clip(where + sd * rng.standard_normal(n), -14.9, 14.9)
+
+
+def _cloud_pairs(rng, runs):
+    """To train and to test, of one kind and of different size; each pair is of its own kind."""
+    for _ in range(runs):
+        kind = (-rng.uniform(3, 5), rng.uniform(3, 5)), rng.uniform(0.4, 0.6), rng.uniform(0.8, 1.2)
+        yield tuple(bimodal_cloud(rng, int(rng.integers(80, 130)), *kind) for _ in range(2))
+
+
+def _scored(f, rng, runs):
+    """Scores of f, of the reference and of the wrong programs on the same clouds."""
+    pairs = list(_cloud_pairs(rng, runs))
+    programs = (fit_scores.reference, *(m.example for m in fit_scores.misconceptions))
+    found = [[shaped(f(train.copy(), test.copy()), 4) for train, test in pairs]]
+    found += [[shaped(g(train, test), 4) for train, test in pairs] for g in programs]
+    if not np.isfinite(found[0]).all():
+        name = NAMES[int((~np.isfinite(found[0])).any(axis=0).argmax())]
         raise ValueError(f"the score of the {name} is infinite or nan: is some density 0?")
-    return found
+    return np.stack(found, axis=-1)
 
 
-def _above(x, better, worse):
-    d = x[:, better] - x[:, worse]
-    z = d.mean() / (d.std(ddof=1) / math.sqrt(len(d)) + 1e-12)
-    return True if z > 3 else f"mean scores {x.mean(0).round(2)}"
+def _like(name):
+    """Does it score every cloud as this wrong program does?"""
+
+    def when(x):
+        k = 2 + [m.name for m in fit_scores.misconceptions].index(name)
+        return (np.abs(x[..., 0] - x[..., k]) < AS_GOOD).all()
+
+    return when
+
+
+def _right(k):
+    def holds(x):
+        off = np.abs(x[:, k, 0] - x[:, k, 1])
+        i = int(off.argmax())
+        return bool(off[i] < AS_GOOD[k]) or (
+            f"cloud {i + 1}: you gave {x[i, k, 0]:.3f}, a right answer {x[i, k, 1]:.3f}"
+        )
+
+    return holds
 
 
 @code(
@@ -57,6 +72,7 @@ def _above(x, better, worse):
     fingerprint=lambda f: f(np.linspace(-3, 3, 9), rng_of(2).normal(size=6), 0.7),
 )
 def kde(x, samples, h):
+    """Density at each x: shape (len(x),)."""
     d = (x[:, None] - samples[None, :]) / h
     return np.mean(np.exp(-0.5 * d**2), axis=1) / (np.sqrt(2 * np.pi) * h)
 
@@ -72,6 +88,18 @@ kde.holds(
         np.exp([0, -0.5, -2]),
     ),
 )
+def _as_reference(f):
+    """Two samples, and many, near and far: relative to the density, so that tails count."""
+    for x, samples, h in (
+        (np.array([0.0, 1.0, 4.0, 9.0]), np.array([1.0, 3.0]), 1.0),
+        (np.linspace(-6, 6, 13), rng_of(4).normal(size=30), 0.8),
+    ):
+        if not np.allclose(f(x, samples, h), kde(x, samples, h), rtol=1e-6, atol=0):
+            return f"not for {samples.size} samples and h = {h}"
+    return True
+
+
+kde.holds("every sample counts alike, also far from all of them", _as_reference)
 kde.holds("one number per x", lambda f: np.shape(f(np.zeros(7), np.zeros(4), 1.0)) == (7,))
 
 
@@ -123,6 +151,34 @@ kde.wrong("""no-half: lacks the 1/2 in the exponent
 )
 
 
+kde.refuses("a Gaussian of sd h at the mean of the samples")(
+    lambda x, samples, h: np.exp(-0.5 * ((x - samples.mean()) / h) ** 2) / (h * np.sqrt(2 * np.pi))
+)
+kde.refuses("the nearest sample alone")(
+    lambda x, samples, h: (
+        np.exp(-0.5 * (np.abs(_d(x, samples)).min(axis=1) / h) ** 2) / (h * np.sqrt(2 * np.pi))
+    )
+)
+kde.refuses("kernels cut off at four bandwidths")(
+    lambda x, samples, h: np.mean(
+        np.exp(-0.5 * (_d(x, samples) / h) ** 2) * (np.abs(_d(x, samples)) < 4 * h), axis=1
+    )
+    / (h * np.sqrt(2 * np.pi))
+)
+kde.refuses("box kernels")(
+    lambda x, samples, h: np.mean(np.abs(_d(x, samples)) < h, axis=1) / (2 * h)
+)
+kde.refuses("a small number added against density 0")(
+    lambda x, samples, h: kde(x, samples, h) + 1e-12
+)
+kde.refuses("normalises over the places that are asked for")(
+    lambda x, samples, h: kde(x, samples, h) / np.sum(kde(x, samples, h))
+)
+kde.refuses("divides by M - 1")(
+    lambda x, samples, h: kde(x, samples, h) * len(samples) / max(len(samples) - 1, 1)
+)
+
+
 @experiment(
     """Which density predicts fresh particles best?
     Fit on train, score on test: the mean of the log density.
@@ -130,72 +186,146 @@ kde.wrong("""no-half: lacks the 1/2 in the exponent
     Return four numbers: Gaussian, histogram, KDE, mixture.""",
     id="p6b",
     points=2,
-    claim="on a belief with two hills: KDE and mixture above histogram above Gaussian",
-    test="paired z of the mean held-out log score > 3; Gaussian between -3.2 and -2.5",
-    runs=30,
-    margin="z is 42, 17 and 16 (sd 2.5): 5 sd above 3; Gaussian -2.84, sd .01",
-    measure=_ranked,
+    claim="the four scores of every cloud are those of the four densities",
+    test="on every cloud within .005 (Gaussian), .001 (histogram, KDE) and .02 nats (mixture) of "
+    "a right one",
+    runs=12,
+    pool=240,
+    margin="no chance enters; an sd that divides by n - 1 changes scores by .003 and .016 at most",
+    measure=_scored,
 )
 def fit_scores(train, test):
-    """Mean log density of ``test``: Gaussian, histogram, KDE, mixture, fit to ``train``."""
+    """Mean log density of test: Gaussian, histogram, KDE, mixture."""
+
+    def normal(x, samples):
+        mu, sd = samples.mean(), samples.std()
+        return np.exp(-0.5 * ((x - mu) / sd) ** 2) / (sd * np.sqrt(2 * np.pi))
+
     edges = np.linspace(-15, 15, 31)
     counts = np.histogram(train, edges)[0] + 0.5  # half a particle more, so that no cell is empty
     heights = counts / counts.sum() / np.diff(edges)
-    histogram = np.log(heights[np.clip(np.searchsorted(edges, test) - 1, 0, 29)])
-    curves = (_normal(test, train), kde(test, train, 0.6), _two_normals(test, train))
-    gaussian, smooth, mixed = (np.log(density).mean() for density in curves)
-    return gaussian, histogram.mean(), smooth, mixed
+    cells = np.searchsorted(edges, test, side="right") - 1
+    parts = train[train < train.mean()], train[train >= train.mean()]
+    mixture = sum(len(part) / len(train) * normal(test, part) for part in parts)
+    curves = normal(test, train), heights[cells], kde(test, train, 0.6), mixture
+    return [np.log(density).mean() for density in curves]
 
 
-fit_scores.holds(
-    "a mean log density: -3.2 to -2.5 for the Gaussian",
-    lambda x: -3.2 < x[:, 0].mean() < -2.5 or f"it is {x[:, 0].mean():.3g}",
-)
-fit_scores.holds("histogram above Gaussian", lambda x: _above(x, 1, 0))
-fit_scores.holds("KDE above histogram", lambda x: _above(x, 2, 1))
-fit_scores.holds("mixture above histogram", lambda x: _above(x, 3, 1))
+for _k, _name in enumerate(NAMES):
+    fit_scores.holds(f"{_name}: the held-out score of every cloud", _right(_k))
+
 fit_scores.wrong("""scored-in-sample: scores the particles that the density was fitted to
     A curve through all points would win your contest. Would it predict?
     A score must use particles that the fit has not seen.
     Evaluate the densities at test, not at train.""")(
-    lambda train, test: _in_sample(train),
-    when=lambda x: -1.99 < x[:, 1].mean() < 0 and x[:, 2].mean() < x[:, 1].mean(),
+    lambda train, test: fit_scores(train, train), when=_like("scored-in-sample")
+)
+fit_scores.wrong("""fitted-to-test: fits the densities to test and scores them at train
+    Which of the two clouds may a fit look at?
+    The arguments are exchanged.
+    Fit to train, evaluate at test.""")(
+    lambda train, test: fit_scores(test, train), when=_like("fitted-to-test")
 )
 fit_scores.wrong("""order: returns the scores in another order
     Which place has the score of the Gaussian in your result?
     The order asked for is: Gaussian, histogram, KDE, mixture.
     The Gaussian has the lowest score, and comes first.""")(
     lambda train, test: fit_scores(train, test)[::-1],
-    when=lambda x: x.max() < 0 and x.mean(axis=0).argmin() > 0,
+    when=lambda x: (
+        np.abs(np.sort(x[..., 0], axis=1) - np.sort(x[..., 1], axis=1)).max() < AS_GOOD.max()
+    ),
 )
 fit_scores.wrong("""negated: has the sign of a loss: it is smallest for the best curve
     Is your score larger or smaller for a better curve?
     The logarithm of a density below 1 is negative.
     Return the mean log density itself, without a minus.""")(
-    lambda train, test: [-s for s in fit_scores(train, test)], when=lambda x: x.min() > 1
+    lambda train, test: [-s for s in fit_scores(train, test)], when=_like("negated")
 )
+
+
+def _at_each(train, test):
+    """The four densities at every test point, (n, 4)."""
+    return np.exp([fit_scores(train, point) for point in test[:, None]])
+
+
 fit_scores.wrong("""not-a-logarithm: is a density, not the logarithm of one
     All your scores lie between 0 and 1. What is log .1?
     A product over fresh particles becomes a sum of logarithms.
     Take np.log of the density at each test point, then the mean.""")(
-    lambda train, test: np.exp(fit_scores(train, test)), when=lambda x: x.min() > 0 and x.max() < 1
+    lambda train, test: _at_each(train, test).mean(axis=0), when=_like("not-a-logarithm")
+)
+fit_scores.wrong("""log-of-mean: takes the logarithm after the mean
+    What would one test point of density 0 do to your score? And to the right one?
+    A score that forgives a density of 0 rewards bold curves.
+    np.log first, then the mean over the test points.""")(
+    lambda train, test: np.log(_at_each(train, test).mean(axis=0)), when=_like("log-of-mean")
 )
 fit_scores.wrong("""summed: adds the log densities, where their mean is asked for
     Your scores grow with the number of test points.
     A mean can be compared between clouds of different size.
     np.mean of the log densities, not np.sum.""")(
-    lambda train, test: [100 * s for s in fit_scores(train, test)], when=lambda x: x.max() < -100
+    lambda train, test: np.multiply(fit_scores(train, test), len(test)), when=_like("summed")
 )
+fit_scores.refuses("constants in the right order")(lambda train, test: [-2.84, -2.3, -2.2, -2.1])
+fit_scores.refuses("the scores of one cloud for all")(
+    lambda train, test: fit_scores(*next(_cloud_pairs(rng_of(1), 1)))
+)
+fit_scores.refuses("constants with the right scatter")(
+    lambda train, test: rng_of(len(test)).normal([-2.84, -2.3, -2.2, -2.1], 0.1)
+)
+fit_scores.refuses("the Gaussian four times")(
+    lambda train, test: [fit_scores(train, test)[0]] * 4
+)
+fit_scores.refuses("scores half of the test points")(
+    lambda train, test: fit_scores(train, test[::2])
+)
+fit_scores.refuses("fits to train and test together")(
+    lambda train, test: fit_scores(np.concatenate([train, test]), test)
+)
+fit_scores.refuses("logarithms to base 10")(
+    lambda train, test: np.divide(fit_scores(train, test), np.log(10))
+)
+
+
+def _changed(k, score):
+    """The right scores but for one, such as another bandwidth."""
+
+    def program(train, test):
+        found = list(fit_scores(train, test))
+        found[k] = score(train, test)
+        return found
+
+    return program
+
+
+fit_scores.refuses("a bandwidth of 1 for .6")(
+    _changed(2, lambda train, test: np.log(kde(test, train, 1.0)).mean())
+)
+fit_scores.refuses("both hills with equal shares")(
+    _changed(3, lambda train, test: np.log(_two_equal_normals(test, train)).mean())
+)
+fit_scores.refuses("no half particle more, but a small number in empty cells")(
+    _changed(1, lambda train, test: np.log(_heights(train, test) + 1e-9).mean())
+)
+
+
+def _two_equal_normals(x, samples):
+    """Samples cut at their mean: each part is one hill of weight .5."""
+    parts = samples[samples < samples.mean()], samples[samples >= samples.mean()]
+    return sum(
+        0.5
+        * np.exp(-0.5 * ((x - part.mean()) / part.std()) ** 2)
+        / (part.std() * np.sqrt(2 * np.pi))
+        for part in parts
+    )
+
+
+def _heights(train, test):
+    edges = np.linspace(-15, 15, 31)
+    density = np.histogram(train, edges, density=True)[0]
+    return density[np.searchsorted(edges, test, side="right") - 1]
 
 
 def _integral(f, h):
     x = np.linspace(-30, 30, 3001)
     return float(np.sum(f(x, rng_of(1).normal(size=20), h)) * (x[1] - x[0]))
-
-
-def _in_sample(train):
-    gaussian, _, smooth, mixed = fit_scores(train, train)
-    edges = np.linspace(-15, 15, 301)
-    counts = np.histogram(train, edges)[0]
-    histogram = np.log(counts[np.searchsorted(edges, train) - 1] / len(train) / 0.1)
-    return gaussian, histogram.mean(), smooth, mixed

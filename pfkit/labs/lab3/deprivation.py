@@ -66,6 +66,12 @@ def _distances(M, rng, runs, frames=10):
     return np.hypot(x - HOME[0], y - HOME[1])
 
 
+def _shares(x):
+    """Mostly none or all, as where a cloud is narrow, but now and then something between."""
+    between = ((x > 0) & (x < 1)).mean()
+    return bool(x.min() >= 0 and x.max() <= 1 and 0.02 < between < 0.5)
+
+
 deprived.wrong("""somebody-far: asks whether some particle is far
     Is a set deprived when one of its particles is lost?
     Deprived means that not one particle is near the truth.
@@ -102,7 +108,8 @@ deprived.wrong("""share-far: gives the share of particles that are far
     How many different numbers should your function return?
     One good particle is enough, so a run is deprived or it is not.
     Use .all(axis=-1) where you have .mean(axis=-1).""")(
-    lambda M, radius, rng, runs: (_distances(M, rng, runs) > radius).mean(axis=-1)
+    lambda M, radius, rng, runs: (_distances(M, rng, runs) > radius).mean(axis=-1),
+    when=lambda x: _shares(x[..., 0]),
 )
 deprived.wrong("""radius-ignored: takes 30 px for near, whatever it is asked
     Which of your arguments does not occur in your function?
