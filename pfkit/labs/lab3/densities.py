@@ -88,6 +88,8 @@ kde.holds(
         np.exp([0, -0.5, -2]),
     ),
 )
+
+
 def _as_reference(f):
     """Two samples, and many, near and far: relative to the density, so that tails count."""
     for x, samples, h in (
@@ -160,10 +162,10 @@ kde.refuses("the nearest sample alone")(
     )
 )
 kde.refuses("kernels cut off at four bandwidths")(
-    lambda x, samples, h: np.mean(
-        np.exp(-0.5 * (_d(x, samples) / h) ** 2) * (np.abs(_d(x, samples)) < 4 * h), axis=1
+    lambda x, samples, h: (
+        np.mean(np.exp(-0.5 * (_d(x, samples) / h) ** 2) * (np.abs(_d(x, samples)) < 4 * h), axis=1)
+        / (h * np.sqrt(2 * np.pi))
     )
-    / (h * np.sqrt(2 * np.pi))
 )
 kde.refuses("box kernels")(
     lambda x, samples, h: np.mean(np.abs(_d(x, samples)) < h, axis=1) / (2 * h)
@@ -273,9 +275,7 @@ fit_scores.refuses("the scores of one cloud for all")(
 fit_scores.refuses("constants with the right scatter")(
     lambda train, test: rng_of(len(test)).normal([-2.84, -2.3, -2.2, -2.1], 0.1)
 )
-fit_scores.refuses("the Gaussian four times")(
-    lambda train, test: [fit_scores(train, test)[0]] * 4
-)
+fit_scores.refuses("the Gaussian four times")(lambda train, test: [fit_scores(train, test)[0]] * 4)
 fit_scores.refuses("scores half of the test points")(
     lambda train, test: fit_scores(train, test[::2])
 )

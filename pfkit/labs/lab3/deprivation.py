@@ -114,15 +114,11 @@ deprived.wrong("""share-far: gives the share of particles that are far
 deprived.wrong("""radius-ignored: takes 30 px for near, whatever it is asked
     Which of your arguments does not occur in your function?
     The check chooses how near is near.
-    (distance > radius).all(axis=-1).""")(
-    lambda M, radius, rng, runs: deprived(M, 30.0, rng, runs)
-)
+    (distance > radius).all(axis=-1).""")(lambda M, radius, rng, runs: deprived(M, 30.0, rng, runs))
 deprived.wrong("""size-ignored: takes 100 particles, whatever it is asked
     Does your function use M?
     The check chooses the number of particles.
-    lab.anywhere((runs, M), rng).""")(
-    lambda M, radius, rng, runs: deprived(100, radius, rng, runs)
-)
+    lab.anywhere((runs, M), rng).""")(lambda M, radius, rng, runs: deprived(100, radius, rng, runs))
 deprived.refuses("a coin with the right share for 100 particles and 30 px")(
     lambda M, radius, rng, runs: rng.random(runs) < 0.12
 )

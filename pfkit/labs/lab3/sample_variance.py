@@ -2,12 +2,12 @@
 
 from __future__ import annotations
 
-import math
-
 import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Question, experiment
+from pfkit.labs import lab3 as lab
+from pfkit.labs.response import same_mean
 from pfkit.labs.statistics import shaped
 from pfkit.labs.target import around, target_log
 
@@ -15,18 +15,52 @@ P7 = Question("Sample variance")
 
 FILM = target_log("fixed", "low")
 HOME = FILM.start[:2]
-W5 = np.array([0.40, 0.25, 0.15, 0.12, 0.08])
+
+M = 6
+
+
+class Recorded:
+    """A scheme that remembers the copies it made, and whether it was called as it should be."""
+
+    def __init__(self, scheme, w, rng):
+        self._scheme, self._w, self._rng = scheme, w, rng
+        self.__name__, self.counts, self.as_given = scheme.__name__, [], True
+
+    def __call__(self, w, rng, *more):
+        same = np.shape(w)[-1:] == self._w.shape and np.allclose(w, self._w)
+        self.as_given &= bool(same) and rng is self._rng
+        found = self._scheme(w, rng, *more)
+        rows = np.reshape(found, (-1, M))  # one set of ancestors, or a batch of them
+        self.counts += [np.bincount(row, minlength=M) for row in rows]
+        return found
 
 
 def _copies(f, rng, runs):
-    schemes = (pf.multinomial, pf.systematic)
-    return np.stack([shaped(f(s, W5, rng, runs), runs, 5) for s in schemes], axis=1)
+    """Per scheme and run: what was returned, what the scheme made (-1: no call), how called."""
+    found = []
+    for scheme in rng.permutation(list(pf.SCHEMES.values()))[:3]:
+        w = rng.dirichlet(np.ones(M))
+        recorded = Recorded(scheme, w, rng)
+        theirs = shaped(f(recorded, w.copy(), rng, runs), runs, M)
+        made = np.full((runs, M), -1.0)
+        kept = recorded.counts[:runs]
+        made[: len(kept)] = np.reshape(kept, (-1, M))
+        flags = [len(recorded.counts), recorded.as_given, 0, 0, 0, 0]
+        found.append(np.stack([theirs, made, np.tile(flags, (runs, 1))], axis=-1))
+    return np.stack(found, axis=1)
 
 
-def _multinomial_variance(x):
-    """Each variance within 30 % of M w (1 - w): five standard errors for 1,000 runs."""
-    ratio = x[:, 0].var(axis=0, ddof=1) / (5 * W5 * (1 - W5))
-    return (np.abs(ratio - 1) < 0.3).all()
+def _returned(x):
+    return x[..., 0]
+
+
+def _made(x):
+    return x[..., 1]
+
+
+def _calls(x):
+    """How often each scheme was called."""
+    return x[0, :, 0, 2]
 
 
 @experiment(
@@ -36,50 +70,129 @@ def _multinomial_variance(x):
     np.bincount(scheme(w, rng), minlength=len(w)), once per run, stacked.""",
     id="p7a",
     points=2,
-    claim="both schemes give M w copies on average; the variance is M w (1 - w) for "
-    "multinomial and at most 1/4 for systematic",
-    test="means within 5 standard errors, variances within 30 %, systematic at most .26",
-    runs=1000,
-    pool=10_000,
-    margin="5 standard errors in 15 comparisons: 1e-5",
+    claim="each row counts the copies of one call of the scheme",
+    test="every row is the count of one call, for three schemes and weights that the check chooses "
+    "and watches",
+    runs=60,
+    pool=600,
+    margin="no chance: what the scheme drew is compared with what was counted",
     measure=_copies,
 )
 def copies(scheme, w, rng, runs):
-    """How many copies each particle got in each run: (runs, M)."""
-    return np.stack([np.bincount(scheme(w, rng), minlength=len(w)) for _ in range(runs)])
+    """How many copies each particle got: whole numbers, shape (runs, M)."""
+    return np.array([np.bincount(scheme(w, rng), minlength=len(w)) for _ in range(runs)])
 
 
 copies.holds(
-    "mean number of copies is M w, both schemes",
+    "calls the scheme once per run",
     lambda x: (
-        np.abs(x.mean(0) - 5 * W5) <= 5 * x.std(0, ddof=1) / math.sqrt(len(x)) + 1e-12
-    ).all(),
+        bool((_calls(x) == _calls(x).max()).all() and (_made(x) >= 0).all())
+        or f"it is called {_calls(x).min():.0f} times"
+    ),
 )
-copies.holds("multinomial variance is M w (1 - w)", _multinomial_variance)
 copies.holds(
-    "systematic variance is at most 1/4", lambda x: x[:, 1].var(axis=0, ddof=1).max() <= 0.26
+    "with the weights and the random numbers that it got", lambda x: (x[:, :, 1, 2] == 1).all()
 )
+copies.holds(
+    "each row counts the copies of one call", lambda x: bool((_returned(x) == _made(x)).all())
+)
+
+
+def _each_call(x):
+    """Is the scheme called for each run, with what it should get?"""
+    return bool((_made(x) >= 0).all() and x[:, :, 1, 2].all())
+
+
 copies.wrong("""shares: gives shares of the set, not numbers of copies
     Your row sums are 1. How many particles are there?
     Copies are whole numbers that sum to M.
     Do not divide by M.""")(
-    lambda s, w, rng, runs: copies(s, w, rng, runs) / len(w),
-    when=lambda x: np.allclose(x.sum(axis=-1), 1),
+    lambda scheme, w, rng, runs: copies(scheme, w, rng, runs) / len(w),
+    when=lambda x: _each_call(x) and np.allclose(_returned(x), _made(x) / M),
 )
 copies.wrong("""yes-or-no: tells only whether a particle survived
     Can a particle have two copies in your table?
     Survival is 0 or 1; copies are 0, 1, 2, ...
     Count with np.bincount(scheme(w, rng), minlength=len(w)).""")(
-    lambda s, w, rng, runs: (copies(s, w, rng, runs) > 0).astype(float),
-    when=lambda x: x.max() == 1 and x.sum(axis=-1).max() > 1,
+    lambda scheme, w, rng, runs: copies(scheme, w, rng, runs) > 0,
+    when=lambda x: _each_call(x) and np.array_equal(_returned(x), _made(x) > 0),
 )
 copies.wrong("""one-call: calls the scheme once and repeats the result
     All your rows are equal.
     Each run needs a call of its own.
     Put scheme(w, rng) inside the loop over runs.""")(
-    lambda s, w, rng, runs: np.tile(copies(s, w, rng, 1), (runs, 1)),
-    when=lambda x: (x == x[0]).all(),
+    lambda scheme, w, rng, runs: np.tile(copies(scheme, w, rng, 1), (runs, 1)),
+    when=lambda x: (_calls(x) == 1).all() and np.array_equal(_returned(x), _made(x[[0] * len(x)])),
 )
+copies.wrong("""no-call: never calls the scheme that it gets
+    Where does your function use its first argument?
+    The check hands over schemes of its own, and watches them.
+    np.bincount(scheme(w, rng), minlength=len(w)).""")(
+    lambda scheme, w, rng, runs: copies(pf.systematic, w, rng, runs),
+    when=lambda x: (_calls(x) == 0).all(),
+)
+copies.wrong("""weights-ignored: hands other weights or other random numbers to the scheme
+    Which weights and which generator does your call of the scheme get?
+    The check chooses both, so that your table can be repeated.
+    scheme(w, rng), with the w and the rng of the arguments.""")(
+    lambda scheme, w, rng, runs: copies(scheme, np.full(len(w), 1 / len(w)), rng, runs),
+    when=lambda x: (_made(x) >= 0).all() and not x[:, :, 1, 2].all(),
+)
+
+
+@copies.wrong(
+    """gives ancestors, not numbers of copies
+    What does index 3 in your row mean: particle 3, or 3 copies?
+    scheme(w, rng) tells for each new particle which old one it copies.
+    Count: np.bincount(scheme(w, rng), minlength=len(w)).""",
+    when=lambda x: (
+        _each_call(x)
+        and all(
+            np.array_equal(np.bincount(row.astype(int), minlength=M), made)
+            for row, made in zip(_returned(x).reshape(-1, M), _made(x).reshape(-1, M), strict=True)
+        )
+    ),
+)
+def ancestors(scheme, w, rng, runs):
+    return np.array([scheme(w, rng) for _ in range(runs)])
+
+
+copies.refuses("what is expected, without a draw", named="no-call")(
+    lambda scheme, w, rng, runs: np.tile(len(w) * w, (runs, 1))
+)
+copies.refuses("numpy's own draw", named="no-call")(
+    lambda scheme, w, rng, runs: rng.multinomial(len(w), w, size=runs)
+)
+copies.refuses("zeros", named="no-call")(lambda scheme, w, rng, runs: np.zeros((runs, len(w))))
+copies.refuses("a generator of its own", named="weights-ignored")(
+    lambda scheme, w, rng, runs: copies(scheme, w, np.random.default_rng(1), runs)
+)
+copies.refuses("half of the runs, each twice")(
+    lambda scheme, w, rng, runs: np.repeat(copies(scheme, w, rng, runs // 2), 2, axis=0)
+)
+copies.refuses("the copies in falling order")(
+    lambda scheme, w, rng, runs: -np.sort(-copies(scheme, w, rng, runs), axis=1)
+)
+copies.refuses("the sum over the runs so far")(
+    lambda scheme, w, rng, runs: np.cumsum(copies(scheme, w, rng, runs), axis=0)
+)
+copies.refuses("the deviation from what is expected")(
+    lambda scheme, w, rng, runs: copies(scheme, w, rng, runs) - len(w) * w
+)
+
+
+ALWAYS, SELDOM = 1.0, 0.5  # thresholds
+
+
+def _often_or_seldom(rng):
+    """Resampling always and when needed, for few particles and for more, wide and narrow."""
+    few, more = int(rng.integers(12, 19)), int(rng.integers(40, 61))
+    wide, narrow = float(rng.uniform(22, 30)), float(rng.uniform(8, 12))
+    return [
+        (threshold, m, s)
+        for m, s in ((few, wide), (more, narrow))
+        for threshold in (ALWAYS, SELDOM)
+    ]
 
 
 @experiment(
@@ -89,47 +202,149 @@ copies.wrong("""one-call: calls the scheme once and repeats the result
     Loop over lab.film[:50] with pf.step(..., pf.multinomial, threshold).""",
     id="p7b",
     points=2,
-    claim="with measurements that say little, resampling at every frame makes the final "
-    "estimate more than twice as variable as resampling below ESS = M/2",
-    test="ratio of the variances over runs > 2",
-    runs=100,
-    margin="ratio 45, sd of its logarithm .2: 15 standard errors above 2",
-    measure=lambda f, rng, runs: np.stack(
-        [shaped(f(threshold, rng, runs), runs) for threshold in (1.0, 0.5)], axis=1
-    ),
+    claim="the error scatters with threshold, number of particles and spread as that of a right "
+    "experiment",
+    test="mean of the error and of its square within 5 standard errors of a right one at each of "
+    "four settings",
+    runs=400,
+    pool=12_000,
+    settings=_often_or_seldom,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors in ten comparisons: 6e-6 for normal means",
 )
-def final_error(threshold, rng, runs):
-    """Error in x after 50 frames that say little: 100 particles, multinomial resampling."""
-    bel = around(HOME, (runs, 100), rng, sigma=20.0)
+def final_error(threshold, M, spread, rng, runs):
+    """Error in x of the last estimate, px: shape (runs,)."""
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=spread)
     motion, sensor = pf.FixedTarget(0.0), pf.Position(300.0)
-    for _, u, z, _ in FILM[:50]:
-        bel, _ = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
-    return pf.mean_pose(bel)[0] - HOME[0]
+    for t, u, z, truth in lab.film[:50]:
+        bel, info = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
+    return pf.mean_pose(bel)[0] - truth[0]
 
 
+def _same_squares(standard_errors=5.0):
+    """The squared errors are as large on average: the scatter about the truth is the same."""
+    return lambda x: same_mean(standard_errors)(x**2)
+
+
+def _sizes(x):
+    """Root mean square of the answer (settings,), and of the reference."""
+    return np.moveaxis(np.sqrt((x**2).mean(axis=0)), -1, 0)
+
+
+def _within(ratio, a, b):
+    return bool((np.abs(np.log(a / b)) < np.log(ratio)).all())
+
+
+def _resamples_as(x, threshold):
+    """At all settings the error is as large as that of a right one with this threshold."""
+    found, right = _sizes(x)
+    same = right[[0, 0, 2, 2]] if threshold == ALWAYS else right[[1, 1, 3, 3]]
+    return bool((x[..., 0] < 0).any() and (x[..., 0] > 0).any() and _within(1.4, found, same))
+
+
+final_error.holds("the errors average out as those of a right experiment", same_mean(5.0))
 final_error.holds(
-    "the errors average out: mean within 5 standard errors of 0",
-    lambda x: (np.abs(x.mean(0)) < 5 * x.std(0, ddof=1) / math.sqrt(len(x)) + 0.1).all(),
+    "they scatter as much, for each threshold, number of particles and spread", _same_squares()
 )
-final_error.holds(
-    "always resampling: more than twice the variance",
-    lambda x: x[:, 0].var() > 2 * x[:, 1].var() or f"variances {x.var(0).round(1)} px^2",
-)
-final_error.wrong("""threshold-unused: gives the same in both cases: it ignores the threshold,
-         or the scheme is not multinomial
+final_error.wrong("""never-always: gives for both thresholds what resampling below ESS = M/2 gives:
+         it ignores the threshold, or the scheme is not multinomial
     Your two variances agree. Where do threshold and scheme enter?
     pf.step resamples if ESS < threshold * M, by the scheme you pass.
     End the call with pf.multinomial, threshold.""")(
-    lambda threshold, rng, runs: final_error(0.5, rng, runs),
-    when=lambda x: 0.5 < x[:, 0].var() / x[:, 1].var() < 2,
+    lambda threshold, M, spread, rng, runs: final_error(SELDOM, M, spread, rng, runs),
+    when=lambda x: _resamples_as(x, SELDOM),
 )
-final_error.wrong("""absolute-error: returns distances, whose mean is not zero
+final_error.wrong("""always: resamples at every frame, whatever the threshold
+    Your two variances agree, and are large. Where does the threshold enter?
+    pf.step resamples if ESS < threshold * M.
+    End the call with pf.multinomial, threshold.""")(
+    lambda threshold, M, spread, rng, runs: final_error(ALWAYS, M, spread, rng, runs),
+    when=lambda x: _resamples_as(x, ALWAYS),
+)
+final_error.wrong("""absolute-error: returns distances, which are never negative
     Can your errors be negative?
     The variance of an estimate needs the signed error.
     Return the mean of x minus the true x, without abs or hypot.""")(
-    lambda threshold, rng, runs: np.abs(final_error(threshold, rng, runs)),
-    when=lambda x: x.min() >= 0,
+    lambda threshold, M, spread, rng, runs: np.abs(final_error(threshold, M, spread, rng, runs)),
+    when=lambda x: bool((x[..., 0] >= 0).all()) and _same_squares(4.0)(x) is True,
 )
+final_error.wrong("""estimate: returns the mean of x itself, not its error
+    Around which number do your results scatter?
+    An error is an estimate minus the truth.
+    pf.mean_pose(bel)[0] - truth[0].""")(
+    lambda threshold, M, spread, rng, runs: final_error(threshold, M, spread, rng, runs) + HOME[0],
+    when=lambda x: (
+        same_mean(4.0)(_minus(x, HOME[0])) is True
+        and _same_squares(4.0)(_minus(x, HOME[0])) is True
+    ),
+)
+final_error.wrong("""other-axis: returns the mean of x minus the true y
+    Around which number do your results scatter?
+    truth is (x, y, heading).
+    pf.mean_pose(bel)[0] - truth[0].""")(
+    lambda threshold, M, spread, rng, runs: (
+        final_error(threshold, M, spread, rng, runs) + HOME[0] - HOME[1]
+    ),
+    when=lambda x: (
+        same_mean(4.0)(_minus(x, HOME[0] - HOME[1])) is True
+        and _same_squares(4.0)(_minus(x, HOME[0] - HOME[1])) is True
+    ),
+)
+final_error.wrong("""squared: returns squared errors
+    In which unit are your errors?
+    The check takes the variance itself.
+    Return the mean of x minus the true x.""")(
+    lambda threshold, M, spread, rng, runs: final_error(threshold, M, spread, rng, runs) ** 2,
+    when=lambda x: (
+        bool((x[..., 0] >= 0).all())
+        and same_mean(4.0)(np.stack([x[..., 0], x[..., 1] ** 2], axis=-1)) is True
+    ),
+)
+
+
+def _minus(x, offset):
+    """The outcomes with an offset taken away from the answer."""
+    return np.stack([x[..., 0] - offset, x[..., 1]], axis=-1)
+
+
+final_error.refuses("normal numbers with the right sd for 100 particles and 20 px")(
+    lambda threshold, M, spread, rng, runs: rng.normal(0, 11.8 if threshold == 1 else 1.7, runs)
+)
+final_error.refuses("zeros")(lambda threshold, M, spread, rng, runs: np.zeros(runs))
+final_error.refuses("random in range")(
+    lambda threshold, M, spread, rng, runs: rng.uniform(-15, 15, runs)
+)
+final_error.refuses("half as many particles")(
+    lambda threshold, M, spread, rng, runs: final_error(threshold, M // 2, spread, rng, runs)
+)
+final_error.refuses("one run, repeated")(
+    lambda threshold, M, spread, rng, runs: np.repeat(
+        final_error(threshold, M, spread, rng, 1), runs
+    )
+)
+final_error.refuses("a spread of 20 px, whatever is asked")(
+    lambda threshold, M, spread, rng, runs: final_error(threshold, M, 20.0, rng, runs)
+)
+final_error.refuses("100 particles, whatever is asked")(
+    lambda threshold, M, spread, rng, runs: final_error(threshold, 100, spread, rng, runs)
+)
+final_error.refuses("one particle of the cloud for its mean")(
+    lambda threshold, M, spread, rng, runs: (
+        final_error(threshold, M, spread, rng, runs) + spread * rng.standard_normal(runs) / 2
+    )
+)
+
+
+@final_error.refuses("ten frames instead of fifty")
+def ten_frames(threshold, M, spread, rng, runs):
+    bel = around(HOME, (runs, M), rng, sigma=spread)
+    for _, u, z, _ in FILM[:10]:
+        bel, _ = pf.step(
+            bel, u, z, pf.FixedTarget(0.0), pf.Position(300.0), rng, pf.multinomial, threshold
+        )
+    return pf.mean_pose(bel)[0] - HOME[0]
+
 
 p7c = Choice("""Which schemes never make an estimate more variable than multinomial?
     a  Systematic, because its numbers of copies vary least

@@ -108,9 +108,7 @@ two_places.wrong("""one-hill: is a single hill, and its mean is its best point
     Let the belief hold two places at once.
     Half of the samples near -10, half near +10.""")(
     lambda rng: rng.normal(0, 1, 400),
-    when=lambda f: (
-        (s := _Shape(f)).hills == 1 and s.at_mean > 0.9 and s.gap < 4 and not s.even
-    ),
+    when=lambda f: (s := _Shape(f)).hills == 1 and s.at_mean > 0.9 and s.gap < 4 and not s.even,
 )
 two_places.wrong("""too-close: has hills that still overlap
     How high is the density half way between your hills?
@@ -146,7 +144,7 @@ two_places.refuses("one stray so far away that it drags the mean out of the hill
 two_places.refuses("99 numbers")(
     lambda rng: np.concatenate([rng.normal(-10, 1, 50), rng.normal(10, 1, 49)])
 )
-two_places.refuses("two hills by luck only: the second is there for some seeds")(
+two_places.refuses("two hills by luck only: the second is there for some seeds", named="one-hill")(
     lambda rng: rng.normal(0, 1, 400) + 20.0 * (rng.random() < 0.3) * (np.arange(400) % 2)
 )
 two_places.refuses("a skewed hill, whose mean is not its best point")(
@@ -262,9 +260,7 @@ circular_mean.refuses("averages numbers, then wraps the mean")(
 circular_mean.refuses("squares the weights")(
     lambda theta, w: np.angle(np.sum(w**2 * np.exp(1j * theta)))
 )
-circular_mean.refuses("the heading of the heaviest particle")(
-    lambda theta, w: theta[np.argmax(w)]
-)
+circular_mean.refuses("the heading of the heaviest particle")(lambda theta, w: theta[np.argmax(w)])
 circular_mean.refuses("arccos of the mean cosine, which knows no sign")(
     lambda theta, w: np.arccos(np.sum(w * np.cos(theta)) / np.sum(w))
 )

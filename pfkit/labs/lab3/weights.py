@@ -22,7 +22,6 @@ p1a = Choice("""What a particle set is
        = None of them need be right: together they say how probable each place is.""")
 
 
-
 def _some_empty(rooms, n):
     """Probability that n particles leave at least one room empty: inclusion and exclusion."""
     ways = (-1) ** np.arange(rooms) * [math.comb(rooms, k + 1) for k in range(rooms)]
