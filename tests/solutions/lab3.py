@@ -29,14 +29,14 @@ p2c = "b"
 
 
 # %% p3a
-def deprived(M, rng, runs):
-    """One True or False per run: is nobody within 30 px of the truth?"""
+def deprived(M, radius, rng, runs):
+    """One True or False per run: is nobody within radius px of the truth?"""
     # BEGIN SOLUTION
     bel = lab.anywhere((runs, M), rng)
     run = lab.track(lab.film[:10], bel, pf.FixedTarget(1.0), pf.Position(10.0), rng)
     x, y = run.bel.state
     tx, ty = lab.film.truth[:2, 9]
-    return (np.hypot(x - tx, y - ty) > 30).all(axis=-1)
+    return (np.hypot(x - tx, y - ty) > radius).all(axis=-1)
     # END SOLUTION
 
 
@@ -54,12 +54,12 @@ p4a = ("c", 80)
 
 
 # %% p4b
-def ess_history(resample, rng, runs):
-    """ESS before each decision to resample: shape (50, runs)."""
+def ess_history(resample, M, sd, rng, runs):
+    """ESS before each decision to resample, 50 frames: shape (50, runs)."""
     # BEGIN SOLUTION
-    bel = lab.around(lab.film.start[:2], (runs, 1000), rng, sigma=5.0)
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=5.0)
     scheme = pf.systematic if resample else None
-    run = lab.track(lab.film[:50], bel, pf.FixedTarget(1.0), pf.Position(3.0), rng, scheme=scheme)
+    run = lab.track(lab.film[:50], bel, pf.FixedTarget(1.0), pf.Position(sd), rng, scheme=scheme)
     return run.ess
     # END SOLUTION
 
@@ -122,10 +122,10 @@ def copies(scheme, w, rng, runs):
 
 
 # %% p7b
-def final_error(threshold, rng, runs):
+def final_error(threshold, M, spread, rng, runs):
     """Error in x of the last estimate, px: shape (runs,)."""
     # BEGIN SOLUTION
-    bel = lab.around(lab.film.start[:2], (runs, 100), rng, sigma=20.0)
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=spread)
     motion, sensor = pf.FixedTarget(0.0), pf.Position(300.0)
     for t, u, z, truth in lab.film[:50]:
         bel, info = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
@@ -142,11 +142,11 @@ p8a = 99 / (2 * 0.05) * (1 - a + np.sqrt(a) * 2.326) ** 3
 
 
 # %% p8b
-def success(side, M, rng, runs):
-    """One True or False per run: is somebody within 30 px?"""
+def success(side, radius, M, rng, runs):
+    """One True or False per run: is somebody within radius px of the centre?"""
     # BEGIN SOLUTION
     x, y = side * (rng.random((2, runs, M)) - 0.5)
-    return (np.hypot(x, y) < 30).any(axis=-1)
+    return (np.hypot(x, y) < radius).any(axis=-1)
     # END SOLUTION
 
 

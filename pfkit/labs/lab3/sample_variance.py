@@ -199,7 +199,7 @@ def _often_or_seldom(rng):
     """Resample always, or only when the ESS is low?
     One number per run: the mean of x at the end, minus the true x.
     pf.step has the arguments scheme and threshold.
-    Loop over lab.film[:50] with pf.step(..., pf.multinomial, threshold).""",
+    In the loop: bel, _ = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold).""",
     id="p7b",
     points=2,
     claim="the error scatters with threshold, number of particles and spread as that of a right "
@@ -217,9 +217,9 @@ def final_error(threshold, M, spread, rng, runs):
     """Error in x of the last estimate, px: shape (runs,)."""
     bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=spread)
     motion, sensor = pf.FixedTarget(0.0), pf.Position(300.0)
-    for t, u, z, truth in lab.film[:50]:
-        bel, info = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
-    return pf.mean_pose(bel)[0] - truth[0]
+    for _, u, z, _ in lab.film[:50]:
+        bel, _ = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
+    return pf.mean_pose(bel)[0] - lab.film.truth[0, 49]
 
 
 def _same_squares(standard_errors=5.0):
@@ -272,7 +272,7 @@ final_error.wrong("""absolute-error: returns distances, which are never negative
 final_error.wrong("""estimate: returns the mean of x itself, not its error
     Around which number do your results scatter?
     An error is an estimate minus the truth.
-    pf.mean_pose(bel)[0] - truth[0].""")(
+    pf.mean_pose(bel)[0] - lab.film.truth[0, 49].""")(
     lambda threshold, M, spread, rng, runs: final_error(threshold, M, spread, rng, runs) + HOME[0],
     when=lambda x: (
         same_mean(4.0)(_minus(x, HOME[0])) is True
@@ -281,8 +281,8 @@ final_error.wrong("""estimate: returns the mean of x itself, not its error
 )
 final_error.wrong("""other-axis: returns the mean of x minus the true y
     Around which number do your results scatter?
-    truth is (x, y, heading).
-    pf.mean_pose(bel)[0] - truth[0].""")(
+    The truth is (x, y, heading).
+    pf.mean_pose(bel)[0] - lab.film.truth[0, 49].""")(
     lambda threshold, M, spread, rng, runs: (
         final_error(threshold, M, spread, rng, runs) + HOME[0] - HOME[1]
     ),
