@@ -122,12 +122,12 @@ def copies(scheme, w, rng, runs):
 
 
 # %% p7b
-def final_error(threshold, M, spread, rng, runs):
+def final_error(threshold, M, T, rng, runs):
     """Error in x of the last estimate, px: shape (runs,)."""
     # BEGIN SOLUTION
-    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=spread)
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=80.0)
     motion, sensor = pf.FixedTarget(0.0), pf.Position(300.0)
-    for t, u, z, truth in lab.film[:50]:
+    for t, u, z, truth in lab.film[:T]:
         bel, info = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
     return pf.mean_pose(bel)[0] - truth[0]
     # END SOLUTION

@@ -50,14 +50,16 @@ def smallest(calls: list[Call], reference: Callable[..., Any]) -> str:
             expected = reference(*args, **kwargs)
         except Exception:
             continue  # an input that the reference refuses shows nothing
+        given = _told(call, reference)
+        lead = f"For {given}" if given else "Called with a generator"
         if call.raised:
-            return f"For {_told(call, reference)} it raised {call.raised}; {_wanted(expected)}."
+            return f"{lead} it raised {call.raised}; {_wanted(expected)}."
         difference = _difference(call.returned, expected)
         if difference and by_chance:
             right = "a right answer with the same random numbers"
             difference = difference.replace("expected", f"{right} can return", 1)
         if difference:
-            return f"For {_told(call, reference)} {difference}."
+            return f"{lead} {difference}."
     return ""
 
 

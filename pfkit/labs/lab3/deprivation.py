@@ -57,11 +57,11 @@ deprived.holds(
 deprived.holds("the share follows the number of particles and the radius", same_mean())
 
 
-def _distances(M, rng, runs, frames=10):
+def _distances(M, rng, runs, frames=10, scheme=pf.systematic):
     """Of all particles from the truth, (runs, M), after some frames."""
     bel = anywhere((runs, M), rng)
     if frames:
-        bel = track(FILM[:frames], bel, pf.FixedTarget(1.0), pf.Position(10.0), rng).bel
+        bel = track(FILM[:frames], bel, pf.FixedTarget(1.0), pf.Position(10.0), rng, scheme).bel
     x, y = bel.state
     return np.hypot(x - HOME[0], y - HOME[1])
 
@@ -84,9 +84,10 @@ deprived.wrong("""somebody-near: counts the runs that are well, not those that a
     Negate it: True means that nobody is near.""")(
     lambda M, radius, rng, runs: ~deprived(M, radius, rng, runs)
 )
-deprived.wrong("""no-filter: looks at the particles too early, before all ten frames have passed
+deprived.wrong("""no-filter: looks at particles that still lie as they were drawn: too early, or never
+         resampled
     Your shares are those of darts thrown at the image. Who aims them?
-    Deprivation comes with resampling: ten frames of the film must pass first.
+    Deprivation comes with resampling: ten frames of the film must pass, each with its own.
     Use run.bel.state, after lab.track(lab.film[:10], ...).""")(
     lambda M, radius, rng, runs: (_distances(M, rng, runs, 0) > radius).all(axis=-1)
 )
@@ -139,6 +140,9 @@ deprived.refuses("one run, repeated")(
 )
 deprived.refuses("one frame instead of ten", named="no-filter")(
     lambda M, radius, rng, runs: (_distances(M, rng, runs, 1) > radius).all(axis=-1)
+)
+deprived.refuses("ten frames without resampling", named="no-filter")(
+    lambda M, radius, rng, runs: (_distances(M, rng, runs, scheme=None) > radius).all(axis=-1)
 )
 deprived.refuses("the distance along x alone")(
     lambda M, radius, rng, runs: (

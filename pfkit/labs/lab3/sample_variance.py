@@ -185,14 +185,11 @@ ALWAYS, SELDOM = 1.0, 0.5  # thresholds
 
 
 def _often_or_seldom(rng):
-    """Resampling always and when needed, for few particles and for more, wide and narrow."""
-    few, more = int(rng.integers(12, 19)), int(rng.integers(40, 61))
-    wide, narrow = float(rng.uniform(22, 30)), float(rng.uniform(8, 12))
-    return [
-        (threshold, m, s)
-        for m, s in ((few, wide), (more, narrow))
-        for threshold in (ALWAYS, SELDOM)
-    ]
+    """Resampling always and when needed: few particles for long, and more for a short time."""
+    few, more = int(rng.integers(12, 19)), int(rng.integers(45, 66))
+    long, short = int(rng.integers(28, 37)), int(rng.integers(8, 13))
+    pairs = ((few, long), (more, short))
+    return [(threshold, M, T) for M, T in pairs for threshold in (ALWAYS, SELDOM)]
 
 
 @experiment(
@@ -202,8 +199,7 @@ def _often_or_seldom(rng):
     In the loop: bel, _ = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold).""",
     id="p7b",
     points=2,
-    claim="the error scatters with threshold, number of particles and spread as that of a right "
-    "experiment",
+    claim="the error scatters with threshold, particles and frames as that of a right experiment",
     test="mean of the error and of its square within 5 standard errors of a right one at each of "
     "four settings",
     runs=400,
@@ -213,13 +209,13 @@ def _often_or_seldom(rng):
     false_fail=1e-3,
     margin="5 standard errors in ten comparisons: 6e-6 for normal means",
 )
-def final_error(threshold, M, spread, rng, runs):
+def final_error(threshold, M, T, rng, runs):
     """Error in x of the last estimate, px: shape (runs,)."""
-    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=spread)
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=80.0)
     motion, sensor = pf.FixedTarget(0.0), pf.Position(300.0)
-    for _, u, z, _ in lab.film[:50]:
+    for _, u, z, _ in lab.film[:T]:
         bel, _ = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
-    return pf.mean_pose(bel)[0] - lab.film.truth[0, 49]
+    return pf.mean_pose(bel)[0] - lab.film.truth[0, T - 1]
 
 
 def _same_squares(standard_errors=5.0):
@@ -245,35 +241,35 @@ def _resamples_as(x, threshold):
 
 final_error.holds("the errors average out as those of a right experiment", same_mean(5.0))
 final_error.holds(
-    "they scatter as much, for each threshold, number of particles and spread", _same_squares()
+    "they scatter as much, for each threshold, number of particles and of frames", _same_squares()
 )
 final_error.wrong("""never-always: gives for both thresholds what resampling below ESS = M/2 gives:
          it ignores the threshold, or the scheme is not multinomial
     Your two variances agree. Where do threshold and scheme enter?
     pf.step resamples if ESS < threshold * M, by the scheme you pass.
     End the call with pf.multinomial, threshold.""")(
-    lambda threshold, M, spread, rng, runs: final_error(SELDOM, M, spread, rng, runs),
+    lambda threshold, M, T, rng, runs: final_error(SELDOM, M, T, rng, runs),
     when=lambda x: _resamples_as(x, SELDOM),
 )
 final_error.wrong("""always: resamples at every frame, whatever the threshold
     Your two variances agree, and are large. Where does the threshold enter?
     pf.step resamples if ESS < threshold * M.
     End the call with pf.multinomial, threshold.""")(
-    lambda threshold, M, spread, rng, runs: final_error(ALWAYS, M, spread, rng, runs),
+    lambda threshold, M, T, rng, runs: final_error(ALWAYS, M, T, rng, runs),
     when=lambda x: _resamples_as(x, ALWAYS),
 )
 final_error.wrong("""absolute-error: returns distances, which are never negative
     Can your errors be negative?
     The variance of an estimate needs the signed error.
     Return the mean of x minus the true x, without abs or hypot.""")(
-    lambda threshold, M, spread, rng, runs: np.abs(final_error(threshold, M, spread, rng, runs)),
+    lambda threshold, M, T, rng, runs: np.abs(final_error(threshold, M, T, rng, runs)),
     when=lambda x: bool((x[..., 0] >= 0).all()) and _same_squares(4.0)(x) is True,
 )
 final_error.wrong("""estimate: returns the mean of x itself, not its error
     Around which number do your results scatter?
     An error is an estimate minus the truth.
-    pf.mean_pose(bel)[0] - lab.film.truth[0, 49].""")(
-    lambda threshold, M, spread, rng, runs: final_error(threshold, M, spread, rng, runs) + HOME[0],
+    pf.mean_pose(bel)[0] - lab.film.truth[0, T - 1].""")(
+    lambda threshold, M, T, rng, runs: final_error(threshold, M, T, rng, runs) + HOME[0],
     when=lambda x: (
         same_mean(4.0)(_minus(x, HOME[0])) is True
         and _same_squares(4.0)(_minus(x, HOME[0])) is True
@@ -282,10 +278,8 @@ final_error.wrong("""estimate: returns the mean of x itself, not its error
 final_error.wrong("""other-axis: returns the mean of x minus the true y
     Around which number do your results scatter?
     The truth is (x, y, heading).
-    pf.mean_pose(bel)[0] - lab.film.truth[0, 49].""")(
-    lambda threshold, M, spread, rng, runs: (
-        final_error(threshold, M, spread, rng, runs) + HOME[0] - HOME[1]
-    ),
+    pf.mean_pose(bel)[0] - lab.film.truth[0, T - 1].""")(
+    lambda threshold, M, T, rng, runs: final_error(threshold, M, T, rng, runs) + HOME[0] - HOME[1],
     when=lambda x: (
         same_mean(4.0)(_minus(x, HOME[0] - HOME[1])) is True
         and _same_squares(4.0)(_minus(x, HOME[0] - HOME[1])) is True
@@ -295,7 +289,7 @@ final_error.wrong("""squared: returns squared errors
     In which unit are your errors?
     The check takes the variance itself.
     Return the mean of x minus the true x.""")(
-    lambda threshold, M, spread, rng, runs: final_error(threshold, M, spread, rng, runs) ** 2,
+    lambda threshold, M, T, rng, runs: final_error(threshold, M, T, rng, runs) ** 2,
     when=lambda x: (
         bool((x[..., 0] >= 0).all())
         and same_mean(4.0)(np.stack([x[..., 0], x[..., 1] ** 2], axis=-1)) is True
@@ -308,42 +302,55 @@ def _minus(x, offset):
     return np.stack([x[..., 0] - offset, x[..., 1]], axis=-1)
 
 
-final_error.refuses("normal numbers with the right sd for 100 particles and 20 px")(
-    lambda threshold, M, spread, rng, runs: rng.normal(0, 11.8 if threshold == 1 else 1.7, runs)
+final_error.refuses("normal numbers with the right sd for 100 particles and 50 frames")(
+    lambda threshold, M, T, rng, runs: rng.normal(0, 24.5 if threshold == 1 else 5.7, runs)
 )
-final_error.refuses("zeros")(lambda threshold, M, spread, rng, runs: np.zeros(runs))
+final_error.refuses("zeros")(lambda threshold, M, T, rng, runs: np.zeros(runs))
 final_error.refuses("random in range")(
-    lambda threshold, M, spread, rng, runs: rng.uniform(-15, 15, runs)
+    lambda threshold, M, T, rng, runs: rng.uniform(-60, 60, runs)
 )
 final_error.refuses("half as many particles")(
-    lambda threshold, M, spread, rng, runs: final_error(threshold, M // 2, spread, rng, runs)
+    lambda threshold, M, T, rng, runs: final_error(threshold, M // 2, T, rng, runs)
 )
 final_error.refuses("one run, repeated")(
-    lambda threshold, M, spread, rng, runs: np.repeat(
-        final_error(threshold, M, spread, rng, 1), runs
-    )
-)
-final_error.refuses("a spread of 20 px, whatever is asked")(
-    lambda threshold, M, spread, rng, runs: final_error(threshold, M, 20.0, rng, runs)
+    lambda threshold, M, T, rng, runs: np.repeat(final_error(threshold, M, T, rng, 1), runs)
 )
 final_error.refuses("100 particles, whatever is asked")(
-    lambda threshold, M, spread, rng, runs: final_error(threshold, 100, spread, rng, runs)
+    lambda threshold, M, T, rng, runs: final_error(threshold, 100, T, rng, runs)
 )
-final_error.refuses("one particle of the cloud for its mean")(
-    lambda threshold, M, spread, rng, runs: (
-        final_error(threshold, M, spread, rng, runs) + spread * rng.standard_normal(runs) / 2
+final_error.refuses("50 frames, whatever is asked")(
+    lambda threshold, M, T, rng, runs: final_error(threshold, M, 50, rng, runs)
+)
+
+
+def _filtered(threshold, M, T, rng, runs, sigma=80.0, sensor=300.0):
+    bel = around(HOME, (runs, M), rng, sigma=sigma)
+    for _, u, z, _ in FILM[:T]:
+        models = pf.FixedTarget(0.0), pf.Position(sensor)
+        bel, _ = pf.step(bel, u, z, *models, rng, pf.multinomial, threshold)
+    return bel
+
+
+final_error.refuses("the mean of the particles without their weights")(
+    lambda threshold, M, T, rng, runs: (
+        _filtered(threshold, M, T, rng, runs).state[0].mean(axis=-1) - HOME[0]
     )
 )
-
-
-@final_error.refuses("ten frames instead of fifty")
-def ten_frames(threshold, M, spread, rng, runs):
-    bel = around(HOME, (runs, M), rng, sigma=spread)
-    for _, u, z, _ in FILM[:10]:
-        bel, _ = pf.step(
-            bel, u, z, pf.FixedTarget(0.0), pf.Position(300.0), rng, pf.multinomial, threshold
-        )
-    return pf.mean_pose(bel)[0] - HOME[0]
+final_error.refuses("one particle of the cloud for its mean")(
+    lambda threshold, M, T, rng, runs: (
+        _filtered(threshold, M, T, rng, runs).state[0, :, 0] - HOME[0]
+    )
+)
+final_error.refuses("a start within 20 px")(
+    lambda threshold, M, T, rng, runs: (
+        pf.mean_pose(_filtered(threshold, M, T, rng, runs, sigma=20.0))[0] - HOME[0]
+    )
+)
+final_error.refuses("a sensor that says much, sd 30 px")(
+    lambda threshold, M, T, rng, runs: (
+        pf.mean_pose(_filtered(threshold, M, T, rng, runs, sensor=30.0))[0] - HOME[0]
+    )
+)
 
 
 p7c = Choice("""Which schemes never make an estimate more variable than multinomial?
