@@ -71,6 +71,11 @@ def stages(lax: bool = False) -> list[Stage]:
         Stage("rooms", "who may import whom", [[*PYTEST, "tests/test_rooms.py"]]),
         Stage("unit", "unit, property and oracle tests", [[*PYTEST, *TWO_CORES, "tests", *apart]]),
         Stage(
+            "replays",
+            "both error rates of the labs' checks hold",
+            [[PYTHON, "tools/replay.py", "--check"]],
+        ),
+        Stage(
             "stamps", "stored outputs are up to date", [[*PYTEST, "tests/test_stamps.py"], *tool]
         ),
         Stage(

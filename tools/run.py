@@ -8,6 +8,7 @@
     numbers     compare the numbers in the prose with the cells:  numbers [--fill] [FILE ...]
     chapters    compare the numbers of chapters with their files:  chapters [--fill]
     options     compare the options in the text with the labs:  options [--fill] [FILE ...]
+    replay      how sure is each check of the labs? measure what changed:  replay [--all]
     clean       remove what was built; clean --all also removes the environment and the caches
 
 The first call makes the environment .venv; nothing outside this folder is touched.
@@ -35,6 +36,7 @@ COMMANDS = {
     "numbers": ("all", "prose_numbers", []),
     "chapters": ("all", "chapter_numbers", []),
     "options": ("all", "options", []),
+    "replay": ("all", "replay", []),
 }
 
 
