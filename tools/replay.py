@@ -210,11 +210,10 @@ def check(names: list[str]) -> int:
     week = datetime.date.today().isocalendar().week % PARTS
     rest = [(lab, i) for lab in names if lab not in stale for i in table[lab]["items"]]
     chosen: dict[str, list[str]] = {lab: [] for lab in stale}
-    for lab, item in rest[week::PARTS]:
+    again = rest[week::PARTS]
+    say(f"{len(stale)} labs changed; of the other {len(rest)} items {len(again)} are tried again")
+    for lab, item in again:
         chosen.setdefault(lab, []).append(item)
-    say(
-        f"replaying {len(stale)} labs that changed and {len(rest[week::PARTS])} of {len(rest)} items"
-    )
     for lab, new in two_at_a_time(list(chosen.items())).items():
         wrong += problems(lab, new["items"])
         kept = table.get(lab, {"items": {}})["items"]
