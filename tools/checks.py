@@ -1,6 +1,7 @@
 """Every check of the project, in the order in which they are cheapest to fail.
 
     make test                                      all of them; stops at the first that fails
+    make check                                     what two minutes can tell, while you work
     python tools/run.py test --keep-going          runs the rest as well
     python tools/run.py test --only rooms unit    only these
     python tools/run.py test --list                says what there is
@@ -17,13 +18,14 @@ import os
 import subprocess
 import sys
 import time
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 from environment import ROOT, say
 
 PYTHON = sys.executable
 PYTEST = [PYTHON, "-m", "pytest", "-p", "no:cacheprovider"]
 TWO_CORES = ["-n", "2", "--dist", "loadfile"]
+BOTH: dict[str, Any] = {"stdout": subprocess.PIPE, "stderr": subprocess.STDOUT}
 MEMORY = ".cache/pytest"  # what failed, so that it can run once more
 CODE = [name for name in ("pfkit", "tests", "tools", "book/_ext") if (ROOT / name).exists()]
 NBVAL = [
@@ -54,13 +56,23 @@ def ruff(fix: bool = False) -> list[list[str]]:
     ]
 
 
+def unit(*words: str) -> list[str]:
+    """Return the command that runs the tests without a stage of their own."""
+    apart = ["tests/test_rooms.py", "tests/test_stamps.py", "tests/book", "tests/live"]
+    return [*PYTEST, *TWO_CORES, *words, "tests", *(f"--ignore={name}" for name in apart)]
+
+
+def compared(tool: str) -> list[str]:
+    """Return the command with which a tool says whether what it fills in is up to date."""
+    return [PYTHON, f"tools/{tool}.py", "--check"]
+
+
+AGREEING = [compared(tool) for tool in ("prose_numbers", "chapter_numbers", "options")]
+
+
 def stages(lax: bool = False) -> list[Stage]:
     """List all checks in order; lax: the last digits of stored outputs may differ."""
     nbval = ["--nbval-lax" if word == "--nbval" else word for word in NBVAL] if lax else NBVAL
-    tools = ("notebooks", "prose_numbers", "chapter_numbers", "options")
-    tool = [[PYTHON, f"tools/{name}.py", "--check"] for name in tools]
-    separate = ["tests/test_rooms.py", "tests/test_stamps.py", "tests/book", "tests/live"]
-    apart = [f"--ignore={name}" for name in separate]
     memory = [word for word in PYTEST if word not in ("-p", "no:cacheprovider")]
     memory += ["-o", f"cache_dir={MEMORY}", "-rs"]
     browser = [name for name in ("tests/book", "tests/live") if list((ROOT / name).glob("test_*"))]
@@ -69,14 +81,16 @@ def stages(lax: bool = False) -> list[Stage]:
         Stage("lint", "style and format (ruff)", ruff()),
         Stage("types", "types of pfkit (mypy)", [[PYTHON, "-m", "mypy"]]),
         Stage("rooms", "who may import whom", [[*PYTEST, "tests/test_rooms.py"]]),
-        Stage("unit", "unit, property and oracle tests", [[*PYTEST, *TWO_CORES, "tests", *apart]]),
+        Stage("unit", "unit, property and oracle tests", [unit()]),
         Stage(
             "replays",
             "both error rates of the labs' checks hold",
-            [[PYTHON, "tools/replay.py", "--check"]],
+            [compared("replay")],
         ),
         Stage(
-            "stamps", "stored outputs are up to date", [[*PYTEST, "tests/test_stamps.py"], *tool]
+            "stamps",
+            "stored outputs are up to date",
+            [[*PYTEST, "tests/test_stamps.py"], compared("notebooks"), *AGREEING],
         ),
         Stage(
             "notebooks",
@@ -93,6 +107,21 @@ def stages(lax: bool = False) -> list[Stage]:
     ]
 
 
+def quick_stages() -> list[Stage]:
+    """List what a developer runs between two edits: nothing slow, no browser, two notebooks."""
+    quick = [stage for stage in stages() if stage.name in ("lint", "types", "rooms")]
+    return [
+        *quick,
+        Stage("unit", "unit tests that are not slow", [unit("-m", "not slow")]),
+        Stage("stamps", "numbers, chapters and options agree", AGREEING),
+        Stage(
+            "notebooks",
+            "at most two stale notebooks executed, the others named",
+            [[PYTHON, "tools/notebooks.py", "--most", "2"]],
+        ),
+    ]
+
+
 def files_that_failed() -> list[str]:
     """Name the test files in which pytest remembers a failure: tests of a file share a page."""
     memory = ROOT / MEMORY / "v" / "cache" / "lastfailed"
@@ -101,18 +130,33 @@ def files_that_failed() -> list[str]:
     return sorted(name for name in files if (ROOT / name).exists())
 
 
-def run(stage: Stage) -> tuple[bool, float]:
-    """Run one check; return whether it passed and how long it took."""
-    say(f"{stage.name}: {stage.shows}")
+def run(stage: Stage, quiet: bool = False) -> tuple[bool, float]:
+    """Run one check; return whether it passed and how long it took.
+
+    A quiet one prints one line; what its commands said follows only if it failed.
+    """
+    if not quiet:
+        say(f"{stage.name}: {stage.shows}")
     start = time.monotonic()
     environment = {**os.environ, "MPLBACKEND": "agg", "PYTHONHASHSEED": "0", "PFKIT_WIDGETS": "off"}
     if stage.name == "notebooks":
         environment["MPLBACKEND"] = "module://matplotlib_inline.backend_inline"
 
     def succeeds(command: list[str]) -> bool:
-        return subprocess.call(command, cwd=ROOT, env=environment) == 0
+        if not quiet:
+            return subprocess.call(command, cwd=ROOT, env=environment) == 0
+        done = subprocess.run(command, cwd=ROOT, env=environment, text=True, **BOTH)
+        told.append(done.stdout)
+        return done.returncode == 0
 
+    told: list[str] = []
     passed = all(map(succeeds, stage.commands))
+    if quiet:
+        word, seconds = ("passed" if passed else "FAILED"), time.monotonic() - start
+        last = next((t.strip().splitlines()[-1] for t in reversed(told) if t.strip()), "")
+        say(f"{stage.name:10s} {word} {seconds:4.0f} s  {last if passed else ''}".rstrip())
+        if not passed:
+            print("\n".join(told))
     if not passed and stage.again and (files := files_that_failed()):
         say(f"{stage.name}: what failed runs once more, by itself: {', '.join(files)}")
         passed = succeeds([*stage.again, *files])
@@ -141,7 +185,7 @@ def run_all(chosen: list[Stage], keep_going: bool) -> bool:
 def main() -> int:
     """Parse the command line and run it."""
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
-    parser.add_argument("command", choices=("test", "lint"))
+    parser.add_argument("command", choices=("test", "lint", "check"))
     parser.add_argument("--fix", action="store_true", help="lint: mend what can be mended")
     parser.add_argument("--keep-going", action="store_true", help="run all stages, fail at the end")
     parser.add_argument("--only", nargs="+", metavar="STAGE", help="run only these stages")
@@ -151,6 +195,8 @@ def main() -> int:
     everything = stages(options.lax)
     if options.command == "lint":
         return 0 if run(Stage("lint", "style and format (ruff)", ruff(options.fix)))[0] else 1
+    if options.command == "check":
+        return 0 if all([run(stage, quiet=True)[0] for stage in quick_stages()]) else 1
     names = [stage.name for stage in everything]
     unknown = set(options.only or []) - set(names)
     if unknown or options.list:

@@ -237,6 +237,7 @@ def main() -> int:
     parser.add_argument("files", nargs="*")
     parser.add_argument("--check", action="store_true", help="execute nothing, list problems")
     parser.add_argument("--force", action="store_true", help="execute even what is up to date")
+    parser.add_argument("--most", type=int, help="execute at most so many, list the others")
     parser.add_argument("--jobs", type=int, default=2)
     parser.add_argument("--cell-timeout", type=int, default=120, help="seconds for one cell")
     options = parser.parse_args()
@@ -245,6 +246,10 @@ def main() -> int:
         return min(check(paths), 1)
     due = [p for p in paths if options.force or stamps.why_stale(stamps.read(p))]
     print(f"{len(paths)} notebooks, {len(due)} to execute")
+    if options.most is not None:
+        for path in due[options.most :]:
+            print(f"{path.name}: stale, left for make notebooks")
+        due = due[: options.most]
     failed = 0
     with concurrent.futures.ProcessPoolExecutor(options.jobs) as pool:
         jobs = {pool.submit(refresh, path, options.cell_timeout): path for path in due}

@@ -3,6 +3,7 @@
     book        install what is needed, build the book into _build/html, say how to open it
     serve       build, then serve the book on this machine:  serve [--port 8000]
     test        run every check in order:  test [--keep-going] [--only STAGE ...] [--list]
+    check       what two minutes can tell, while you work
     lint        style and format of the code (ruff); lint --fix mends what it can
     notebooks   execute the notebooks whose code, package or data changed:  notebooks [FILE ...]
     numbers     compare the numbers in the prose with the cells:  numbers [--fill] [FILE ...]
@@ -31,6 +32,7 @@ COMMANDS = {
     "book": ("book", "book", ["book"]),
     "serve": ("book", "book", ["serve"]),
     "test": ("all", "checks", ["test"]),
+    "check": ("all", "checks", ["check"]),
     "lint": ("all", "checks", ["lint"]),
     "notebooks": ("all", "notebooks", []),
     "numbers": ("all", "prose_numbers", []),
