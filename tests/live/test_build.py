@@ -24,6 +24,7 @@ def build():
 def test_without_node_it_says_so_and_succeeds(build, tmp_path, monkeypatch, capsys):
     for name, folder in (("CACHE", "c"), ("SITE", "c/site"), ("PARTS", "c/parts")):
         monkeypatch.setattr(build, name, tmp_path / folder)
+    monkeypatch.setattr(build.npm_packages, "FOLDER", tmp_path / "npm")
     monkeypatch.setattr(build.shutil, "which", lambda *a, **k: None)
     assert build.main() == 0
     told = capsys.readouterr().out
@@ -49,8 +50,8 @@ def test_two_builds_are_equal_byte_for_byte(build, tmp_path, monkeypatch):
             assert str(ROOT).encode() not in data, name
 
 
-def test_the_lock_pins_by_integrity_and_names_no_host():
-    lock = json.loads((TOOL.parent / "package-lock.json").read_text(encoding="utf-8"))
+def test_the_lock_pins_by_integrity_and_names_no_host(build):
+    lock = json.loads(build.npm_packages.LISTS[1].read_text(encoding="utf-8"))
     packages = {name: p for name, p in lock["packages"].items() if name}
     assert packages and all(p["integrity"].startswith("sha512-") for p in packages.values())
     assert not any("resolved" in p for p in packages.values())

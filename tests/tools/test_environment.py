@@ -6,8 +6,8 @@ import ast
 import subprocess
 import sys
 
-import assets
 import environment
+import npm_packages
 import pytest
 import run
 from environment import ROOT, Stop
@@ -74,9 +74,9 @@ def test_another_failure_of_pip_does_not_blame_the_network(pip_says):
 
 def test_npm_without_network_is_one_line(monkeypatch, tmp_path):
     failed = subprocess.CompletedProcess([], 1, "", "npm error code ENOTFOUND\nnpm error network")
-    monkeypatch.setattr(assets.subprocess, "run", lambda *args, **kwargs: failed)
-    with pytest.raises(Stop) as stop:
-        assets.npm("ci", folder=tmp_path)
+    monkeypatch.setattr(npm_packages.subprocess, "run", lambda *args, **kwargs: failed)
+    with pytest.raises(Stop, match="Is there a network") as stop:
+        npm_packages.run("npm", "ci", folder=tmp_path)
     assert "\n" not in str(stop.value)
 
 

