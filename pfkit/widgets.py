@@ -21,7 +21,7 @@ from importlib.resources import files
 from typing import Any
 
 from pfkit import palette
-from pfkit.explore import FRONT_END, scene
+from pfkit.explore import FRONT_END, operations, scene
 from pfkit.explore.host import Host
 
 GLUE = """
@@ -114,7 +114,7 @@ def _front_end() -> tuple[str, str]:
     web = files("pfkit.explore") / "web"
     scripts = [(web / name).read_text(encoding="utf-8") for name in FRONT_END]
     style = (web / "explorable.css").read_text(encoding="utf-8")
-    return "\n".join([palette.script(), *scripts, GLUE]), style
+    return "\n".join([palette.script(), operations.script(), *scripts, GLUE]), style
 
 
 def _widget_class() -> Any:

@@ -55,7 +55,7 @@ logger = logging.getLogger(__name__)
 ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
-SCRIPTS = ("keys.js", "palette.js", *FRONT_END, "page.js")
+SCRIPTS = ("keys.js", "palette.js", "operations.js", *FRONT_END, "page.js")
 LAB_SCRIPTS = ("store.js", "choices.js", "lab.js")
 STUB = re.compile(r"^(\w+) = \.\.\.\s*(#.*)?$")  # an answer cell that waits for a letter
 

@@ -36,28 +36,10 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike
 
+from pfkit.explore.operations import NUMBER, SHAPES, operation
 from pfkit.palette import COLOURS
 
 STYLES = tuple(COLOURS)
-SHAPES = ("circle", "square", "diamond", "cross", "triangle", "plus", "star")
-OPS = (
-    "view",
-    "points",
-    "bubbles",
-    "segments",
-    "line",
-    "area",
-    "bars",
-    "robots",
-    "ellipses",
-    "stems",
-    "image",
-    "text",
-    "symbols",
-    "quills",
-    "ticks",
-)
-OP = {name: i + 1 for i, name in enumerate(OPS)}
 _STYLE = {name: i for i, name in enumerate(STYLES)}
 _SHAPE = {name: i for i, name in enumerate(SHAPES)}
 
@@ -74,7 +56,7 @@ class Pen:
 
     def _add(self, op: str, style: str, *numbers: ArrayLike) -> None:
         payload = [np.asarray(v, np.float32).ravel() for v in numbers]
-        head = np.array([OP[op], _STYLE[style], sum(p.size for p in payload)], np.float32)
+        head = np.array([NUMBER[op], _STYLE[style], sum(p.size for p in payload)], np.float32)
         self._parts.extend([head, *payload])
 
     def view(
@@ -161,5 +143,5 @@ def records(drawing: np.ndarray):
     i = 0
     while i < drawing.size:
         op, style, n = (int(v) for v in drawing[i : i + 3])
-        yield OPS[op - 1], STYLES[style], drawing[i + 3 : i + 3 + n]
+        yield operation(op).name, STYLES[style], drawing[i + 3 : i + 3 + n]
         i += 3 + n

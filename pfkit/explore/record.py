@@ -18,25 +18,20 @@ from typing import Any
 import numpy as np
 
 from pfkit.explore.host import report
-from pfkit.explore.pen import OP, OPS, STYLES
+from pfkit.explore.operations import FEWEST, Operation, operation
 from pfkit.explore.scene import Scene
 
 LEVELS = 1000
-EXACT = {"view", "text", "ticks", "bars", "robots", "symbols", "line", "area"}
-LEAD = {"points": 1, "segments": 1, "ellipses": 2, "stems": 2, "image": 6, "quills": 2}
-ROWS = {"points": 2, "bubbles": 3, "segments": 4, "ellipses": 5, "stems": 2, "image": 1}
-ROWS["quills"] = 3
 
 
-def _pack(op: str, numbers: np.ndarray, floats: list[float], ints: list[np.ndarray]) -> None:
+def _pack(op: Operation, numbers: np.ndarray, floats: list[float], ints: list[np.ndarray]) -> None:
     """Append one record's numbers: as float32, or as quantised differences if there are many."""
-    lead = LEAD.get(op, 0)
-    if op in EXACT or numbers.size - lead < 24:
+    if not op.rows or numbers.size - op.lead < FEWEST:
         floats.extend(numbers)
         return
-    floats.extend(numbers[:lead])
-    rows = numbers[lead:].reshape(ROWS[op], -1)
-    if op in ("points", "quills"):
+    floats.extend(numbers[: op.lead])
+    rows = numbers[op.lead :].reshape(op.rows, -1)
+    if op.name in ("points", "quills"):
         rows = rows[:, np.argsort(np.round(rows[0], 2) * 1e4 + rows[1], kind="stable")]
     for row in rows:
         low, high = float(row.min()), float(row.max())
@@ -55,7 +50,7 @@ def pack(drawing: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
     while i < drawing.size:
         op, style, n = (int(v) for v in drawing[i : i + 3])
         heads.extend((op, style, n))
-        _pack(OPS[op - 1], drawing[i + 3 : i + 3 + n], floats, ints)
+        _pack(operation(op), drawing[i + 3 : i + 3 + n], floats, ints)
         i += 3 + n
     joined = np.concatenate(ints) if ints else np.empty(0, np.int16)
     return np.array(heads, np.int32), np.array(floats, np.float32), joined
@@ -106,6 +101,3 @@ def to_script(recording: dict[str, Any], key: str) -> str:
     """The recording as a classic script, which a page can load from a folder as well."""
     body = json.dumps(recording, separators=(",", ":"), ensure_ascii=True)
     return f"(window.pfRecordings=window.pfRecordings||{{}})[{json.dumps(key)}]={body};\n"
-
-
-__all__ = ["OP", "STYLES", "pack", "record", "to_script"]

@@ -10,7 +10,8 @@ from html import escape
 
 import numpy as np
 
-from pfkit.explore.pen import SHAPES, records
+from pfkit.explore.operations import SHAPES
+from pfkit.explore.pen import records
 from pfkit.palette import COLOURS
 
 LIGHT = {name: light for name, (light, _) in COLOURS.items()}

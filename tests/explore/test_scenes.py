@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+from pathlib import Path
 from xml.etree import ElementTree
 
 import numpy as np
@@ -11,10 +13,12 @@ import pytest
 from pfkit.errors import ParameterError
 from pfkit.explore import SCENES, scene
 from pfkit.explore.host import Host
-from pfkit.explore.pen import OPS, Pen, records
+from pfkit.explore.operations import OPERATIONS
+from pfkit.explore.pen import Pen, records
 from pfkit.explore.record import record, to_script
-from pfkit.explore.still import to_svg
+from pfkit.explore.still import Still, to_svg
 
+ROOT = Path(__file__).parents[2]
 PANELS = [(name, panel) for name in SCENES for panel in type(scene(name)).panels]
 LARGEST_RUN = 150_000  # bytes
 
@@ -46,7 +50,7 @@ def test_reset_forgets_everything(name, panel):
 def test_drawing_is_float32_and_made_of_known_records(name, panel):
     drawing, readouts = run(name, panel).frame()
     assert drawing.dtype == np.float32 and drawing.ndim == 1
-    assert {op for op, _, _ in records(drawing)} <= set(OPS)
+    assert {op for op, _, _ in records(drawing)} <= {o.name for o in OPERATIONS}
     assert sum(3 + n.size for _, _, n in records(drawing)) == drawing.size
     assert readouts and all(isinstance(v, str | float) for v in readouts.values())
 
@@ -163,3 +167,10 @@ def test_pen_broadcasts():
     ((op, style, numbers),) = records(pen.array())
     assert (op, style) == ("segments", "ink")
     assert numbers.tolist() == [1.5, 0, 0, 0, 0, 1, 2, 3, 3]
+
+
+def test_each_operation_is_drawn_in_the_page_and_in_a_still():
+    script = (ROOT / "pfkit/explore/web/render.js").read_text(encoding="utf-8")
+    for operation in OPERATIONS[1:]:  # a view sets the scale and draws nothing
+        assert re.search(rf"^    {operation.name}\(d", script, re.M), operation.name
+        assert hasattr(Still, operation.name)

@@ -39,7 +39,8 @@ from environment import Stop  # noqa: E402
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
 PARTS = CACHE / "parts"
-PALETTE = ROOT / "pfkit" / "palette.py"
+# Modules that hand a table of theirs to the page; they need no other part of pfkit.
+SPOKEN = (ROOT / "pfkit" / "palette.py", ROOT / "pfkit" / "explore" / "operations.py")
 OURS = (ROOT / "pfkit" / "explore" / "web", ROOT / "book" / "live")
 DATA = (".txt", ".dat", ".csv")
 RUNTIME = ("pyodide.js", "pyodide.asm.js", "pyodide.asm.wasm", "python_stdlib.zip")
@@ -158,8 +159,9 @@ def build_site(site: Path, live: bool) -> None:
     for folder in OURS:
         for path in sorted(folder.glob("*.*")):
             shutil.copyfile(path, site / path.name)
-    script = runpy.run_path(str(PALETTE))["script"]()  # it needs no other part of pfkit
-    (site / "palette.js").write_text(script, encoding="utf-8", newline="\n")
+    for module in SPOKEN:
+        script = runpy.run_path(str(module))["script"]()
+        (site / f"{module.stem}.js").write_text(script, encoding="utf-8", newline="\n")
     if not live:
         return
     for path in sorted(PARTS.iterdir()):

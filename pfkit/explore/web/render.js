@@ -4,10 +4,7 @@
 (function (PF) {
   "use strict";
 
-  const SHAPES = ["circle", "square", "diamond", "cross", "triangle", "plus", "star"];
-  const LEAD = { 2: 1, 4: 1, 9: 2, 10: 2, 11: 6, 14: 2 };
-  const ROWS = { 2: 2, 3: 3, 4: 4, 9: 5, 10: 2, 11: 1, 14: 3 };
-  const EXACT = new Set([1, 5, 6, 7, 8, 12, 13, 15]);
+  const { operations: OPERATIONS, shapes: SHAPES, fewest: FEWEST } = PF.drawing; // operations.py
   const FONT = "ui-sans-serif, system-ui, -apple-system, 'Segoe UI', Roboto, Arial, sans-serif";
 
   function rgb(hex) {
@@ -72,7 +69,7 @@
         if (op === 1) this.view(d);
         c.strokeStyle = c.fillStyle = this.color(style);
         c.globalAlpha = 1;
-        if (op !== 1) this[NAMES[op]](d, style);
+        if (op !== 1) this[OPERATIONS[op].name](d, style);
         i += 3 + n;
       }
       c.restore();
@@ -397,8 +394,6 @@
       c.stroke();
     }
   };
-  const NAMES = ["", "view", "points", "bubbles", "segments", "line", "area", "bars", "robots",
-    "ellipses", "stems", "image", "text", "symbols", "quills", "ticks"];
 
   /* ---- recorded runs ----------------------------------------------------------------------- */
   async function inflate(text) {
@@ -423,14 +418,14 @@
     return recording.frames.map(([nh, , , ticks, readouts, handles]) => {
       const out = [];
       for (const end = h + nh; h < end; h += 3) {
-        const op = heads[h], n = heads[h + 2], lead = LEAD[op] || 0;
+        const op = heads[h], n = heads[h + 2], { lead, rows } = OPERATIONS[op];
         out.push(op, heads[h + 1], n);
-        if (EXACT.has(op) || n - lead < 24) {
+        if (!rows || n - lead < FEWEST) {
           for (let k = 0; k < n; k++) out.push(floats[f++]);
           continue;
         }
         for (let k = 0; k < lead; k++) out.push(floats[f++]);
-        const rows = ROWS[op], length = (n - lead) / rows;
+        const length = (n - lead) / rows;
         for (let r = 0; r < rows; r++) {
           const low = floats[f++], scale = floats[f++];
           for (let k = 0, level = 0; k < length; k++) {
