@@ -32,6 +32,7 @@ START, END = "<!-- rates: filled by make replay -->", "<!-- end of rates -->"
 DECISIONS, TRIES = 3_000, 200
 LEAST = 0.95  # share of replays in which a wrong answer must be refused, or named
 LAZY = {"C": 3, "X": 5}  # wrong answers an item must be known to refuse
+COPIES = {"one-call"}  # wrong answers whose runs are copies of each other
 PARTS = 10  # that the weeks take turns with
 # Labs whose chapters are still to be rebuilt: their items need not have such lists yet.
 PENDING = ("motion", "sensing", "outliers", "real_robot")
@@ -40,6 +41,7 @@ PENDING = ("motion", "sensing", "outliers", "real_robot")
 def rates_of(item: Any) -> dict[str, Any]:
     """Replay one item: how often a right answer fails, a wrong one is refused and named."""
     from pfkit.labs import Experiment, replay
+    from pfkit.labs.replay import in_its_own_way
 
     if not isinstance(item, Experiment):
         return {
@@ -47,11 +49,13 @@ def rates_of(item: Any) -> dict[str, Any]:
             "refused": {r.says: _judged(item, r.example, r.named) for r in item.refused},
             "named": {m.name: _judged(item, m.example, m.name) for m in item.misconceptions},
         }
-    right = replay(item, item.reference, DECISIONS)
+    # beside a reference on the same seeds a copy of it can never fail: let it draw in its own way
+    own = item.reference if item.settings is None else in_its_own_way(item.reference)
+    right = replay(item, own, DECISIONS)
     pool = max(min(item.pool, 600) // 4, 3 * item.runs)
 
     def wrong(example: Any, name: str) -> float:
-        rate = replay(item, example, TRIES, pool)
+        rate = replay(item, example, TRIES, pool, fresh=name in COPIES)
         return round(rate.misconceptions.get(name, 0) / rate.decisions, 3)
 
     return {

@@ -13,15 +13,6 @@ LABS = catalogue.all_labs()
 ITEMS = [(lab, i) for lab in LABS for i in LABS[lab].items.values() if i.letter in tool.LAZY]
 
 
-@pytest.mark.parametrize(("lab", "item", "refused"), REFUSED, ids=name)
-def test_a_lazy_experiment_is_refused(lab, item, refused):
-    pool = max(min(item.pool, 600) // 4, 3 * item.runs)
-    rate = replay(item, refused.example, 200, pool)
-    print(f"{lab} {item.id} {refused.says}: refused {rate.share:.3f}")
-    assert rate.share >= 0.95
-    assert rate.misconceptions.get(refused.named, 0) >= 0.95 * rate.fails
-
-
 def test_upper_bound_is_the_rule_of_three():
     assert upper_bound(0, 3000) == pytest.approx(3 / 3000, rel=0.01)
     assert upper_bound(5, 100) == pytest.approx(0.1023, abs=1e-3)  # Clopper-Pearson, tables
