@@ -19,7 +19,7 @@ from pfkit.labs.lab3 import (
     survival,
     weights,
 )
-from pfkit.labs.target import anywhere, around, target_log, track
+from pfkit.labs.lab3.given import anywhere, around, film, line, target_log, track
 
 LAB = Lab.of(
     __name__, "Lab 3: the particle filter",
@@ -27,7 +27,6 @@ LAB = Lab.of(
     motion_models, likelihood, resamplers, survival, noise, ablations,
 )  # fmt: skip
 __getattr__ = LAB.verb
-film, line = deprivation.FILM, motion_models.LINE
 
 __all__ = [
     "LAB",

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Prediction, Question, experiment
-from pfkit.labs import lab3 as lab
+from pfkit.labs.lab3 import given as lab
 from pfkit.labs.response import same_mean, same_scatter
 
 Q7 = Question("No process noise, fixed target")
@@ -243,7 +245,8 @@ def _errors(M, sigma, rng, runs, first=100, **options):
     return run.error[first:].mean(axis=0)
 
 
-PLAIN, WEIGHTED, RESAMPLED = {"scheme": None, "weighted": False}, {"scheme": None}, {}
+PLAIN, WEIGHTED = {"scheme": None, "weighted": False}, {"scheme": None}
+RESAMPLED: dict[str, Any] = {}
 
 
 @three_filters.wrong("""resamples in all three cases

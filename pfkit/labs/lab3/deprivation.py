@@ -6,7 +6,7 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Prediction, Question, Text, experiment
-from pfkit.labs import lab3 as lab
+from pfkit.labs.lab3 import given as lab
 from pfkit.labs.response import same_mean, same_scatter
 from pfkit.labs.target import anywhere, around, target_log, track
 

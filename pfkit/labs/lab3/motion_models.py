@@ -7,7 +7,7 @@ import numpy as np
 import pfkit as pf
 from pfkit.geometry import wrap
 from pfkit.labs import Choice, Numeric, Question, code, experiment
-from pfkit.labs import lab3 as lab
+from pfkit.labs.lab3 import given as lab
 from pfkit.labs.response import calls, same_mean, same_scatter
 from pfkit.labs.statistics import rng_of
 from pfkit.labs.target import target_log
