@@ -68,12 +68,16 @@ def _is_plain(value: Any) -> bool:
         return value.dtype.kind in "biuf"
     if isinstance(value, list | tuple):
         return all(_is_plain(v) for v in value)
+    if isinstance(value, dict):
+        return all(_is_plain(v) for v in (*value, *value.values()))
     return isinstance(value, bool | int | float | np.number | str | np.random.Generator)
 
 
 def _size(value: Any) -> int:
     if isinstance(value, list | tuple):
         return sum(_size(v) for v in value)
+    if isinstance(value, dict):
+        return sum(_size(v) for v in value.values())
     return 0 if isinstance(value, np.random.Generator) else int(np.size(value))
 
 
@@ -109,6 +113,12 @@ def _wanted(expected: Any) -> str:
 
 def _difference(returned: Any, expected: Any) -> str:
     """``you returned 1; expected 2``, or "" where both are the same."""
+    pair = isinstance(returned, tuple) and isinstance(expected, tuple)
+    if pair and len(returned) == len(expected):
+        for k, (one, other) in enumerate(zip(returned, expected, strict=True), start=1):
+            if told := _difference(one, other):
+                return told.replace("you returned", f"you returned, in place {k},", 1)
+        return ""
     try:
         a, b = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)
     except (TypeError, ValueError):
