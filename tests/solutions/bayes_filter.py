@@ -2,7 +2,7 @@
 # mypy: ignore-errors
 """Bayes filter: solutions. One block per item; `# %% id` names the answer cell it belongs to.
 
-The experiments use the chapter's own `drive`.
+`zero_x` uses the chapter's own `drive`.
 """
 
 # %% twice
@@ -42,19 +42,24 @@ def predict(bel, moves):
 
 
 # %% twice_x
-def twice_x(rng):
+def twice_x(run, rng):
     # BEGIN SOLUTION
-    _, after, cells, _, _ = drive(rng, B=200, T=25, looks=2)
-    claim, best = after[-1].max(axis=1), after[-1].argmax(axis=1)
-    return claim.mean() - np.mean(best == cells[-1])
+    low, high = 0.05, 2.0
+    for _ in range(10):
+        power = np.sqrt(low * high)
+        beliefs, cells = run(power, rng)
+        too_sure = beliefs.max(axis=1).mean() > np.mean(beliefs.argmax(axis=1) == cells)
+        low, high = (low, power) if too_sure else (power, high)
+    return np.sqrt(low * high)
     # END SOLUTION
 
 
 # %% zero_x
-def zero_x(rng):
+def zero_x(steps, real, assumed, rng):
     # BEGIN SOLUTION
-    _, after, cells, _, _ = drive(rng, T=40, real=(0.8, 0.05), assumed=(0.8, 1e-12))
-    return float(after[np.arange(40), 0, cells[:, 0]].min() < 1e-6)
+    _, after, cells, _, _ = drive(rng, B=100, T=steps, real=(0.8, real), assumed=(0.8, assumed))
+    own = np.take_along_axis(after, cells[..., None], axis=2)[..., 0]
+    return np.mean(own.min(axis=0) < 1e-6)
     # END SOLUTION
 
 

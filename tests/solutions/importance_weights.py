@@ -40,19 +40,25 @@ def estimate(f, log_p, log_q):
 
 
 # %% narrow_x
-def narrow_x(rng):
+def narrow_x(weigh, rng):
     # BEGIN SOLUTION
-    x = 0.4 * rng.standard_normal(1000)
-    return np.exp(pf.log_gaussian(x, 1) - pf.log_gaussian(x, 0.4)).mean()
+    def share(M):
+        w = np.array([weigh(M, rng) for _ in range(20)])
+        return np.mean(w.sum(axis=1) ** 2 / np.sum(w**2, axis=1)) / M
+
+    return share(10_000) < 0.7 * share(100)
     # END SOLUTION
 
 
 # %% dim_x
-def dim_x(rng):
+def dim_x(cloud, rng):
     # BEGIN SOLUTION
-    x = rng.uniform(-5, 5, (3, 20_000))
-    log_w, _ = pf.normalise(pf.log_gaussian(x, 0.3).sum(axis=0))
-    return pf.ess(log_w) / 20_000
+    M, ess = 100, 0
+    while ess < 200:
+        M = 2 * M
+        log_w, _ = pf.normalise(cloud(M, rng))
+        ess = pf.ess(log_w)
+    return 100 * M / ess
     # END SOLUTION
 
 

@@ -93,17 +93,17 @@ def _told(call: Call, reference: Callable[..., Any]) -> str:
     return ", ".join(f"{n} = {shown(a)}" for n, a in plain)
 
 
-def shown(value: Any, most: int = 120) -> str:
+def shown(value: Any, most: int = 120, digits: int = 4) -> str:
     """Numbers to four digits, long arrays shortened."""
     if isinstance(value, np.ndarray | list | tuple) and _is_plain(value):
         try:
             array = np.asarray(value)
         except ValueError:
             return repr(value)[:most]
-        with np.printoptions(precision=4, suppress=True, threshold=8, edgeitems=2):
+        with np.printoptions(precision=digits, suppress=True, threshold=8, edgeitems=2):
             return " ".join(np.array2string(array, separator=", ").split())[:most]
     if isinstance(value, float | np.floating):
-        return f"{value:.4g}"
+        return f"{value:.{digits}g}"
     return repr(value)[:most]
 
 
@@ -131,7 +131,9 @@ def _difference(returned: Any, expected: Any) -> str:
     if not apart.any():
         return ""
     if a.size <= 8:
-        return f"you returned {shown(returned)}; {_wanted(expected)}"
+        digits = 4 if shown(returned) != shown(expected) else 12  # all that tells them apart
+        one, other = shown(returned, digits=digits), shown(expected, digits=digits)
+        return f"you returned {one}; expected {other}"
     at = tuple(int(k) for k in np.argwhere(apart)[0])
     place = at[0] if len(at) == 1 else at
     return (
