@@ -149,7 +149,7 @@ def _matches_sets(f):
     for M in (2, 7, 400):
         w = rng.random(M) ** 2
         w /= w.sum()
-        if not np.isclose(f(w.var(ddof=1), M), 1 / (w @ w), rtol=1e-9):
+        if not np.isclose(f(w.var(ddof=1), M), 1 / (w @ w), rtol=1e-6):
             return f"for a set of {M} it gives {f(w.var(ddof=1), M):.6g}, not {1 / (w @ w):.6g}"
     return True
 
@@ -201,7 +201,7 @@ def _draws(seed):
 
 
 def _like_reference(f, args):
-    return np.isclose(f(*args), estimate(*args), rtol=1e-9)
+    return np.isclose(f(*args), estimate(*args), rtol=1e-6)
 
 
 def _right(f):
@@ -210,7 +210,7 @@ def _right(f):
 
 def _constant_cancels(f):
     x, log_p, log_q = _draws(7)
-    return np.isclose(f(x, log_p + 3.0, log_q), f(x, log_p, log_q), rtol=1e-9)
+    return np.isclose(f(x, log_p + 3.0, log_q), f(x, log_p, log_q), rtol=1e-6)
 
 
 def _faint(seed=8):
@@ -342,8 +342,8 @@ def _verdicts(f, rng, runs):
     """Of six proposals a run: the verdict, the truth, the width, the constant, draws made."""
     found = np.empty((runs, 6, 5))
     for row in found:
-        narrow = rng.uniform(0.3, 0.5, 3)
-        wide = rng.uniform((0.9, 1.6, 5), (1.4, 2.5, 9))
+        narrow = rng.uniform(0.4, 0.5, 3)
+        wide = rng.uniform((0.9, 1.6, 13), (1.4, 2.5, 18))
         for column, s in zip(row, rng.permutation(np.append(narrow, wide)), strict=True):
             weigh = _Weights(s, 10 ** rng.uniform(-CONSTANT, CONSTANT))
             verdict = f(weigh, np.random.default_rng(rng.integers(2**63)))
@@ -370,7 +370,7 @@ def _wrong_verdicts(x):
     measure=_verdicts,
     claim="draws betray a proposal whose weights have no finite variance",
     test="at least 23 of 24 hidden proposals told rightly, half of them too narrow",
-    margin="twenty repetitions put narrow below 0.4 of the share, wide above 0.85",
+    margin="a hundred times the draws leave a narrow one below 0.4 of its share, a wide one 0.8",
 )
 def narrow_x(weigh, rng):
     def share(M):
@@ -452,6 +452,9 @@ narrow_x.refuses("heaviest against the mean in one run of ten draws")(
 )
 narrow_x.refuses("a share of ten draws, once, below one in two")(
     lambda weigh, rng: _size(weigh(10, rng)) < 5
+)
+narrow_x.refuses("weights that vary by more than ten times their squared mean")(
+    lambda weigh, rng: (lambda w: w.var() > 10 * w.mean() ** 2)(weigh(10_000, rng))
 )
 narrow_x.refuses("a heaviest draw of five times the mean is narrow", named="very-wide")(
     lambda weigh, rng: (lambda w: w.max() > 5 * w.mean())(weigh(1000, rng))
