@@ -343,7 +343,7 @@ def _verdicts(f, rng, runs):
     found = np.empty((runs, 6, 5))
     for row in found:
         narrow = rng.uniform(0.4, 0.5, 3)
-        wide = rng.uniform((0.9, 1.6, 13), (1.4, 2.5, 18))
+        wide = rng.uniform((0.9, 1.6, 15), (1.4, 2.5, 20))
         for column, s in zip(row, rng.permutation(np.append(narrow, wide)), strict=True):
             weigh = _Weights(s, 10 ** rng.uniform(-CONSTANT, CONSTANT))
             verdict = f(weigh, np.random.default_rng(rng.integers(2**63)))
