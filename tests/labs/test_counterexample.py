@@ -89,3 +89,27 @@ def test_an_input_that_the_reference_refuses_shows_nothing():
 def test_numbers_are_short():
     assert shown(0.123456) == "0.1235"
     assert len(shown(np.arange(1000))) < 60
+
+
+def test_a_dictionary_goes_in_and_is_shown():
+    call = Call(({0: 0.5, 1: 0.5},), {}, returned=1.0)
+    assert can_be_told(call.args, {}) and call.size == 2
+    assert smallest([call], lambda moves: len(moves)) == (
+        "For moves = {0: 0.5, 1: 0.5} you returned 1; expected 2."
+    )
+
+
+def test_of_several_results_the_wrong_one_is_shown():
+    def reference(x):
+        return np.array([x, x]), x
+
+    right = Call((1.0,), {}, returned=(np.ones(2), 1.0))
+    wrong = Call((2.0,), {}, returned=(np.full(2, 2.0), 3.0))
+    assert smallest([right], reference) == ""
+    told = "For x = 2 you returned, in place 2, 3; expected 2."
+    assert smallest([right, wrong], reference) == told
+
+
+def test_numbers_that_look_alike_are_shown_to_more_digits():
+    told = smallest([Call((1.0,), {}, returned=2.0)], lambda x: 2.00001)
+    assert told == "For x = 1 you returned 2; expected 2.00001."
