@@ -288,18 +288,16 @@ class Experiment(Function):
             self._kept[key] = self._response(known, runs, seed, world)
         return self._kept[key]
 
-    def _fits(self, mistake: Misconception, evidence: Any) -> bool:
-        """Does it respond as the wrong experiment does, setting by setting?"""
-        found, world = evidence
-        if mistake.when is not None:
-            return bool(mistake.when(found))
-        if found.ndim != 3:
-            return False
-        key = (mistake.name, len(found), self.seed, world)
-        if key not in self._kept:
-            self._kept[key] = self.outcomes(mistake.example, len(found), world=world)[..., 0]
-        pair = np.stack([found[..., 0], self._kept[key]], axis=-1)
-        return response.same_mean(3.5)(pair) is True and response.same_scatter(2.5)(pair) is True
+    def rivals(
+        self, runs: int, seed: int | None = None, world: int | None = None
+    ) -> dict[str, np.ndarray]:
+        """The responses of the wrong programs that answers are compared with, by name."""
+        seed, found = self.seed if seed is None else seed, {}
+        for mistake in self.misconceptions:
+            if mistake.when is None:
+                with contextlib.suppress(Exception):  # one that raises resembles nothing
+                    found[mistake.name] = self._kept_response(mistake.example, runs, seed, world)
+        return found
 
     def judge(self, answer: Any) -> Judgement:
         if not callable(answer):
