@@ -245,7 +245,8 @@ def _errors(M, sigma, rng, runs, first=100, **options):
     return run.error[first:].mean(axis=0)
 
 
-PLAIN, WEIGHTED = {"scheme": None, "weighted": False}, {"scheme": None}
+PLAIN: dict[str, Any] = {"scheme": None, "weighted": False}
+WEIGHTED: dict[str, Any] = {"scheme": None}
 RESAMPLED: dict[str, Any] = {}
 
 
