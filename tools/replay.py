@@ -49,9 +49,8 @@ def rates_of(item: Any) -> dict[str, Any]:
             "refused": {r.says: _judged(item, r.example, r.named) for r in item.refused},
             "named": {m.name: _judged(item, m.example, m.name) for m in item.misconceptions},
         }
-    # beside a reference on the same seeds a copy of it can never fail: let it draw in its own way
-    own = item.reference if item.settings is None else in_its_own_way(item.reference)
-    right = replay(item, own, DECISIONS)
+    alike = item.settings is not None  # beside itself on the same seeds nothing can fail
+    right = replay(item, in_its_own_way(item.reference) if alike else item.reference, DECISIONS)
     pool = max(min(item.pool, 600) // 4, 3 * item.runs)
 
     def wrong(example: Any, name: str) -> float:
