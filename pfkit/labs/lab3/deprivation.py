@@ -84,8 +84,8 @@ deprived.wrong("""somebody-near: counts the runs that are well, not those that a
     Negate it: True means that nobody is near.""")(
     lambda M, radius, rng, runs: ~deprived(M, radius, rng, runs)
 )
-deprived.wrong("""no-filter: looks at particles that still lie as they were drawn: too early, or never
-         resampled
+deprived.wrong("""no-filter: looks at particles that still lie as they were drawn: too early, or
+         never resampled
     Your shares are those of darts thrown at the image. Who aims them?
     Deprivation comes with resampling: ten frames of the film must pass, each with its own.
     Use run.bel.state, after lab.track(lab.film[:10], ...).""")(

@@ -187,7 +187,7 @@ ALWAYS, SELDOM = 1.0, 0.5  # thresholds
 def _often_or_seldom(rng):
     """Resampling always and when needed: few particles for long, and more for a short time."""
     few, more = int(rng.integers(12, 19)), int(rng.integers(45, 66))
-    long, short = int(rng.integers(28, 37)), int(rng.integers(8, 13))
+    long, short = int(rng.integers(28, 37)), int(rng.integers(3, 6))
     pairs = ((few, long), (more, short))
     return [(threshold, M, T) for M, T in pairs for threshold in (ALWAYS, SELDOM)]
 
@@ -236,7 +236,7 @@ def _resamples_as(x, threshold):
     """At all settings the error is as large as that of a right one with this threshold."""
     found, right = _sizes(x)
     same = right[[0, 0, 2, 2]] if threshold == ALWAYS else right[[1, 1, 3, 3]]
-    return bool((x[..., 0] < 0).any() and (x[..., 0] > 0).any() and _within(1.4, found, same))
+    return bool((x[..., 0] < 0).any() and (x[..., 0] > 0).any() and _within(1.2, found, same))
 
 
 final_error.holds("the errors average out as those of a right experiment", same_mean(5.0))
