@@ -36,20 +36,23 @@ def leftover(w):
 
 
 # %% clock_x
-def clock_x(rng):
+def clock_x(scheme, N, rng):
     # BEGIN SOLUTION
-    k, age = 50, 0
-    while 0 < k < 100:
-        k, age = rng.binomial(100, k / 100), age + 1
+    of_a, age = N // 2, 0
+    while 0 < of_a < N:
+        ancestors = scheme(np.full(N, 1 / N), rng)
+        of_a, age = np.sum(ancestors < of_a), age + 1  # the first ones are of cluster A
     return age
     # END SOLUTION
 
 
 # %% best_x
-def best_x(rng):
+def best_x(w):
     # BEGIN SOLUTION
-    w = np.tile([1.5, 0.5], 500) / 1000
-    return np.sum(pf.systematic(w, rng) % 2 == 0)
+    order = np.empty(w.size, dtype=int)
+    order[::2] = np.flatnonzero(w > 1 / w.size)
+    order[1::2] = np.flatnonzero(w < 1 / w.size)
+    return order
     # END SOLUTION
 
 
