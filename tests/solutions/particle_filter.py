@@ -45,27 +45,24 @@ def sir(state, log_w, rng):
 
 
 # %% no_copy_x
-def no_copy_x(rng):
+def no_copy_x(M, steps, rng):
     # BEGIN SOLUTION
-    world = pf.worlds.arena()
-    motion = pf.VelocityMotion(alpha=(0.02, 0.002, 0.002, 0.02, 0.002, 0.002))
-    sensor = pf.RangeBearing(world, sigma_r=0.3, sigma_phi=0.1)
-    route = pf.worlds.arena_route()[:, :50]
-    log = pf.simulate_log(pf.worlds.ARENA_START, route, motion, sensor, rng)
-    bel = pf.uniform_prior(1000, world, rng)
+    log = pf.simulate_log(start_pose, route[:, :steps], motion, sensor, rng)
+    bel = pf.gaussian_prior(M, start_pose, [0.5, 0.5, 0.1], rng)
     return pf.run(log, bel, motion, sensor, rng, threshold=0).ess[-1]
     # END SOLUTION
 
 
 # %% frozen_x
-def frozen_x(rng):
+def frozen_x(sensor, M, rng):
     # BEGIN SOLUTION
-    world, pose = pf.worlds.arena(), np.array([5.0, 4.0, 0.0])
-    vague, bel = pf.RangeBearing(world, 2.0, 0.5), pf.uniform_prior(100, world, rng)
-    for _ in range(60):
-        bel, _ = pf.update(bel, vague.sample(pose, rng), vague)
-        bel = pf.resample(bel, pf.systematic, rng)
-    return np.unique(bel.state[0]).size
+    state, log_w = pf.uniform_prior(M, world, rng).state, np.full(M, -np.log(M))
+    for step in range(1, 41):
+        log_w, _ = update(log_w, sensor.log_likelihood(sensor.sample(pose, rng), state))
+        state, log_w = sir(state, log_w, rng)
+        if len(set(state[0])) < 5:
+            break
+    return step
     # END SOLUTION
 
 
