@@ -91,25 +91,19 @@ def test_numbers_are_short():
     assert len(shown(np.arange(1000))) < 60
 
 
-def test_a_dictionary_goes_in_and_is_shown():
-    call = Call(({0: 0.5, 1: 0.5},), {}, returned=1.0)
-    assert can_be_told(call.args, {}) and call.size == 2
-    assert smallest([call], lambda moves: len(moves)) == (
-        "For moves = {0: 0.5, 1: 0.5} you returned 1; expected 2."
+def test_results_of_several_parts_differ_where_a_part_does():
+    @code(
+        """Weights, and their sum
+        h1
+        h2
+        h3""",
+        id="parts",
     )
+    def parts(w):
+        return w / w.sum(), w.sum()
 
-
-def test_of_several_results_the_wrong_one_is_shown():
-    def reference(x):
-        return np.array([x, x]), x
-
-    right = Call((1.0,), {}, returned=(np.ones(2), 1.0))
-    wrong = Call((2.0,), {}, returned=(np.full(2, 2.0), 3.0))
-    assert smallest([right], reference) == ""
-    told = "For x = 2 you returned, in place 2, 3; expected 2."
-    assert smallest([right, wrong], reference) == told
-
-
-def test_numbers_that_look_alike_are_shown_to_more_digits():
-    told = smallest([Call((1.0,), {}, returned=2.0)], lambda x: 2.00001)
-    assert told == "For x = 1 you returned 2; expected 2.00001."
+    parts.holds("weights and sum", lambda f: np.isclose(f(np.array([3.0, 1.0]))[1], 4.0))
+    told = parts.judge(lambda w: (w / w.sum(), w.size)).example
+    assert "in part 2 of the result you returned 2; expected 4" in told
+    ragged = parts.judge(lambda w: (w / w.sum(),)).example
+    assert "1 parts; expected 2" in ragged or "shape" in ragged

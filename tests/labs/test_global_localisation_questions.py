@@ -18,6 +18,7 @@ def test_keys_follow_from_their_formulas():
 
 def test_luck_fails_a_right_answer_less_than_once_in_ten_thousand():
     """The index is uniform over four by symmetry, so each share is binomial."""
-    far = [k for k in range(201) if abs(k / 200 - 0.25) >= 0.135]
-    tail = sum(comb(200, k) * 0.25**k * 0.75 ** (200 - k) for k in far)
-    assert 4 * tail < 8e-5
+    n = global_localisation.luck_x.runs
+    far = [k for k in range(n + 1) if abs(k / n - 0.25) >= 0.18]
+    tail = sum(comb(n, k) * 0.25**k * 0.75 ** (n - k) for k in far)
+    assert 4 * tail < 1e-4

@@ -47,26 +47,28 @@ def missing(W):
     # END SOLUTION
 
 
+# %% luck_x
+def luck_x(sensor, bel, rng):
+    # BEGIN SOLUTION
+    log = pf.simulate_log(start, forward, motion, sensor, rng, batch=len(bel.log_w))
+    bel = pf.run(log, bel, motion, sensor, rng).bel
+    W = pf.hypothesis_mass(bel, pf.images(log.truth[:, -1, :, 0], g), 3.0)
+    heaviest = W.argmax(axis=0)
+    heaviest[W.max(axis=0) <= 0.01] = -1
+    return heaviest
+    # END SOLUTION
+
+
 # %% prior
 prior = "b"
 
 
-# %% luck_x
-def luck_x(rng, runs):
-    # BEGIN SOLUTION
-    log = pf.simulate_log(start, forward, motion, sensor, rng, batch=runs)
-    bel = pf.uniform_prior((runs, 300), world, rng)
-    bel = pf.run(log, bel, motion, sensor, rng).bel
-    poses = pf.images(log.truth[:, -1, :, 0], g)
-    return pf.hypothesis_mass(bel, poses, 3.0).argmax(axis=0)
-    # END SOLUTION
-
-
 # %% alive_x
-def alive_x(M, rng):
+def alive_x(M, sigma_r, rng):
     # BEGIN SOLUTION
+    look = pf.MaximumLikelihood(pf.RangeBearing(world, sigma_r, 0.1))
     bel = pf.uniform_prior(M, world, rng)
-    bel, _ = pf.update(bel, sensor.sample(start, rng), sensor)
+    bel, _ = pf.update(bel, look.sample(start, rng), look)
     return np.sum(pf.hypothesis_mass(bel, pf.images(start, g), 1.5) > 0.01)
     # END SOLUTION
 

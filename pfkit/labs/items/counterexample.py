@@ -111,6 +111,18 @@ def _wanted(expected: Any) -> str:
     return f"expected {shown(expected)}"
 
 
+def _difference_in_parts(returned: Any, expected: Any) -> str:
+    """The same for results of several parts: the first part that differs."""
+    if not isinstance(returned, tuple | list) or not isinstance(expected, tuple | list):
+        return f"you returned {shown(returned)}; {_wanted(expected)}"
+    if len(returned) != len(expected):
+        return f"you returned {len(returned)} parts; expected {len(expected)}"
+    for k, (a, b) in enumerate(zip(returned, expected, strict=True), start=1):
+        if difference := _difference(a, b):
+            return f"in part {k} of the result {difference}"
+    return ""
+
+
 def _difference(returned: Any, expected: Any) -> str:
     """``you returned 1; expected 2``, or "" where both are the same."""
     pair = isinstance(returned, tuple) and isinstance(expected, tuple)
@@ -122,7 +134,7 @@ def _difference(returned: Any, expected: Any) -> str:
     try:
         a, b = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)
     except (TypeError, ValueError):
-        return f"you returned {shown(returned)}; {_wanted(expected)}"
+        return _difference_in_parts(returned, expected)
     if a.shape != b.shape:
         return (
             f"you returned {shown(returned)} of shape {a.shape}; {_wanted(expected)} of {b.shape}"
