@@ -360,7 +360,8 @@ def _clocks(f, rng, runs):
     found = np.zeros((runs, 3, 5))
     for i, child in enumerate(rng.spawn(runs)):
         for k, scheme in enumerate((pf.multinomial, _half_kept, _in_pairs)):
-            N, seed, seen = 2 * int(child.integers(2, 6)), child.integers(2**32), []
+            N, seed = 2 * int(child.integers(2, 6)), child.integers(2**32)
+            seen: list[np.ndarray] = []
 
             def watched(w, rng, n=None, *, seen=seen, scheme=scheme):
                 seen.append(np.array(w, dtype=float))

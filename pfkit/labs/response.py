@@ -6,7 +6,8 @@ student's function and the reference with the same random numbers, and asks whet
 does what the second does: the same mean at every setting, the same scatter from run to run.
 
 `each_setting` makes the outcomes, `same_mean` and `same_scatter` decide, `Counted` and `Watched`
-see whether an experiment was made at all.
+see whether an experiment was made at all, `calls` whether an answer only calls what it should
+write.
 """
 
 from __future__ import annotations

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import copy
 import inspect
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -111,30 +111,17 @@ def _wanted(expected: Any) -> str:
     return f"expected {shown(expected)}"
 
 
-def _difference_in_parts(returned: Any, expected: Any) -> str:
-    """The same for results of several parts: the first part that differs."""
-    if not isinstance(returned, tuple | list) or not isinstance(expected, tuple | list):
-        return f"you returned {shown(returned)}; {_wanted(expected)}"
-    if len(returned) != len(expected):
-        return f"you returned {len(returned)} parts; expected {len(expected)}"
-    for k, (a, b) in enumerate(zip(returned, expected, strict=True), start=1):
-        if difference := _difference(a, b):
-            return f"in part {k} of the result {difference}"
-    return ""
-
-
 def _difference(returned: Any, expected: Any) -> str:
     """``you returned 1; expected 2``, or "" where both are the same."""
-    pair = isinstance(returned, tuple) and isinstance(expected, tuple)
-    if pair and len(returned) == len(expected):
-        for k, (one, other) in enumerate(zip(returned, expected, strict=True), start=1):
-            if told := _difference(one, other):
-                return told.replace("you returned", f"you returned, in place {k},", 1)
-        return ""
+    if isinstance(returned, tuple) and isinstance(expected, tuple):
+        return _difference_in_parts(returned, expected)
     try:
         a, b = np.asarray(returned, dtype=float), np.asarray(expected, dtype=float)
     except (TypeError, ValueError):
-        return _difference_in_parts(returned, expected)
+        several = isinstance(returned, tuple | list) and isinstance(expected, tuple | list)
+        if several:
+            return _difference_in_parts(returned, expected)
+        return f"you returned {shown(returned)}; {_wanted(expected)}"
     if a.shape != b.shape:
         return (
             f"you returned {shown(returned)} of shape {a.shape}; {_wanted(expected)} of {b.shape}"
@@ -152,3 +139,13 @@ def _difference(returned: Any, expected: Any) -> str:
         f"you returned {a[at]:.4g} at index {place}; expected {b[at]:.4g} there "
         f"({int(apart.sum())} of {a.size} numbers differ)"
     )
+
+
+def _difference_in_parts(returned: Sequence[Any], expected: Sequence[Any]) -> str:
+    """The same for results of several parts: the first part that differs."""
+    if len(returned) != len(expected):
+        return f"you returned {len(returned)} parts; expected {len(expected)}"
+    for k, (a, b) in enumerate(zip(returned, expected, strict=True), start=1):
+        if difference := _difference(a, b):
+            return f"in part {k} of the result {difference}"
+    return ""
