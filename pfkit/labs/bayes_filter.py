@@ -520,8 +520,8 @@ def _lost(steps, real, assumed, rng, robots=ALONE):
     pool=288,
     settings=_knobs,
     claim="false alarms that the filter holds impossible rule out the true cell",
-    test="share as a right experiment's on the same numbers, within 6 standard errors",
-    margin="of the difference, at each of three settings",
+    test="the share is that of a right experiment with the same numbers",
+    margin="within six standard errors of the difference, at each of three settings",
 )
 def zero_x(steps, real, assumed, rng):
     _, after, cells, _, _ = drive(rng, B=100, T=steps, real=(0.8, real), assumed=(0.8, assumed))
