@@ -169,12 +169,12 @@ class Watched:
         return called
 
 
-def calls(run: Callable[[], Any], *modules: str) -> bool:
-    """Does ``run()`` reach a function of these modules, under whatever name?
+def calls(run: Callable[[], Any], *things: Any) -> bool:
+    """Does ``run()`` reach the module of one of these functions or classes, under whatever name?
 
     What is written oneself must not be a call of what stands in the library.
     """
-    found = False
+    found, modules = False, {thing.__module__ for thing in things}
 
     def look(frame: FrameType, event: str, _: Any) -> None:
         nonlocal found

@@ -275,7 +275,7 @@ circle_mean.holds(
 circle_mean.holds("headings stay within one turn, also after several turns", _one_turn)
 circle_mean.holds(
     "it is your own: no call of pf.CircleTarget",
-    lambda f: not calls(lambda: f(_states(6, 4), 1.0), "pfkit.targets"),
+    lambda f: not calls(lambda: f(_states(6, 4), 1.0), pf.CircleTarget),
 )
 
 

@@ -122,7 +122,7 @@ diffuse.holds("every x and every y has a draw of its own", _own_noise)
 diffuse.holds("the noise is Gaussian", _bell)
 diffuse.holds(
     "it is your own: no call of pf.FixedTarget",
-    lambda f: not calls(lambda: f(np.zeros((2, 3)), 1.0, rng_of(1)), "pfkit.targets"),
+    lambda f: not calls(lambda: f(np.zeros((2, 3)), 1.0, rng_of(1)), pf.FixedTarget),
 )
 diffuse.wrong("""noise-alone: returns the noise without the state
     Start at (100, 100). Where does your cloud end up?

@@ -196,7 +196,7 @@ systematic.holds(
 )
 systematic.holds(
     "it is your own: no call of pf.systematic",
-    lambda f: not calls(lambda: f(W.copy(), rng_of(1)), "pfkit.resampling"),
+    lambda f: not calls(lambda: f(W.copy(), rng_of(1)), pf.systematic),
 )
 systematic.wrong("""multinomial: is multinomial resampling: every draw is independent
     How many random numbers does one call use? A comb needs one.
@@ -397,7 +397,7 @@ residual.holds(
 residual.holds("its chance comes from rng, afresh at each call", _from_rng)
 residual.holds(
     "it is your own: no call of pf.residual",
-    lambda f: not calls(lambda: f(W.copy(), rng_of(1)), "pfkit.resampling"),
+    lambda f: not calls(lambda: f(W.copy(), rng_of(1)), pf.systematic),
 )
 
 

@@ -290,13 +290,6 @@ survived.refuses("always True")(lambda scheme, w, M, rng: True)
 survived.refuses("a fair coin")(lambda scheme, w, M, rng: rng.random() < 0.5)
 
 
-@survived.refuses("asks for the last particle", named="ordinary-weight")
-def last_particle(scheme, w, M, rng):
-    weights = np.full(M, (1 - w) / (M - 1))
-    weights[0] = w
-    return M - 1 in scheme(weights, rng)
-
-
 @survived.refuses("half as many particles")
 def half_as_many(scheme, w, M, rng):
     return survived(scheme, w, M // 2, rng)
