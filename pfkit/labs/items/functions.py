@@ -205,6 +205,8 @@ class Experiment(Function):
     together : bool
         With ``settings``: ``f(*setting, rng, runs)`` makes all runs of a setting side by side and
         returns (runs,) numbers, or rows of them; outcomes get a third axis for the rows.
+    rows : tuple of int, optional
+        Which of many rows are compared; all of them by default.
     measure : callable
         ``measure(f, rng, runs)`` -> outcomes of the runs, an array whose first axis is the runs.
         By default ``f(rng)`` is called once per run. Not together with ``settings``.
@@ -227,6 +229,7 @@ class Experiment(Function):
     runs: int
     settings: Callable[[np.random.Generator], Sequence[tuple]] | None = None
     together: bool = False
+    rows: tuple[int, ...] = ()
     measure: Callable[[Any, np.random.Generator, int], Any] = each_run
     false_fail: float = 1e-4
     margin: str = ""
@@ -261,7 +264,7 @@ class Experiment(Function):
             if found.shape != right.shape:
                 wanted, got = ((*x.shape[2:], runs) for x in (right, found))
                 raise ValueError(f"expected numbers of shape {wanted}, got shape {got}")
-            found = np.stack([found, right], axis=-1)
+            found = self._compared(np.stack([found, right], axis=-1))
         if found.shape[:1] != (runs,):
             raise ValueError(f"expected results of {runs} runs, got shape {found.shape}")
         if not np.isfinite(found).all():
@@ -296,8 +299,12 @@ class Experiment(Function):
         for mistake in self.misconceptions:
             if mistake.when is None:
                 with contextlib.suppress(Exception):  # one that raises resembles nothing
-                    found[mistake.name] = self._kept_response(mistake.example, runs, seed, world)
+                    kept = self._kept_response(mistake.example, runs, seed, world)
+                    found[mistake.name] = self._compared(kept)
         return found
+
+    def _compared(self, x: np.ndarray) -> np.ndarray:
+        return x[:, :, list(self.rows)] if self.rows else x
 
     def judge(self, answer: Any) -> Judgement:
         if not callable(answer):
