@@ -493,7 +493,7 @@ twice_x.refuses("claims just two in three, honest or not")(
 def _knobs(rng):
     """Steps, real and assumed rate of false alarms: often, seldom, never ruled out."""
     return [
-        (int(rng.integers(20, 29)), float(rng.uniform(0.03, 0.05)), 1e-12),
+        (int(rng.integers(10, 14)), float(rng.uniform(0.08, 0.11)), 1e-12),
         (int(rng.integers(8, 13)), float(rng.uniform(0.03, 0.06)), 1e-10),
         (int(rng.integers(8, 13)), float(rng.uniform(0.05, 0.1)), 0.02),
     ]
