@@ -11,6 +11,8 @@ from pfkit.labs.lab import Lab
 from pfkit.labs.lab4 import detection, gates, modelled_noise, motion_models, precision, undetected
 from pfkit.labs.lab4.detection import auc
 from pfkit.labs.lab4.motion_models import model_of, start_of
+from pfkit.labs.lab4.precision import measurement_error
+from pfkit.labs.long_runs import LONG_RUNS
 from pfkit.labs.target import AREA, anywhere, around, target_log, track
 
 LAB = Lab.of(
@@ -44,6 +46,7 @@ __all__ = [
     "half_false",
     "load",
     "long_run",
+    "measurement_error",
     "model_of",
     "predict",
     "save",

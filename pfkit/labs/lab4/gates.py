@@ -6,14 +6,21 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Numeric, Prediction, Question, experiment
-from pfkit.labs.statistics import shaped
-from pfkit.labs.target import anywhere, around, target_log, track
+from pfkit.labs import lab4 as lab
+from pfkit.labs.response import same_mean, same_scatter
 
 Q15 = Question("What moves the detector?")
 
-FILM = target_log("fixed", "low")
-HOME = FILM.start[:2]
-BELIEVED = (1e-4, 1.0, 100.0, 1000.0, 2000.0, 1e4)
+
+def _gates(rng):
+    """Believed variances, thresholds and particles: some, some, none, all rejected."""
+    variance = 10 ** rng.uniform([-2.1, -1.5, 0.7, 0.0], [-1.8, -1.2, 1.3, 0.0])
+    threshold = 10 ** rng.uniform([-4.3, -2.3, -4.5, -4.5], [-3.9, -1.8, -4.0, -4.0])
+    variance[3] = rng.uniform(1.3, 2.0) / (2 * np.pi * threshold[3])  # its peak is too low
+    M = rng.integers([60, 40, 60, 60], [100, 60, 100, 100])
+    chosen = zip(variance, threshold, M, strict=True)
+    return [(float(f"{v:.3g}"), float(f"{t:.2g}"), int(m)) for v, t, m in chosen]
+
 
 q15a = Prediction("""Rejected share of honest frames as the believed sensor variance grows
     a  It falls: a modest sensor forgives
@@ -24,108 +31,170 @@ q15a = Prediction("""Rejected share of honest frames as the believed sensor vari
 
 @experiment(
     """A U-shape
-    lab.track(..., gate=1e-4).rejected is True where the gate was closed.
+    lab.track(..., gate=threshold).rejected is True where the gate was closed.
     One number per run: the mean over frames.
     pf.Position(np.sqrt(variance)).""",
     id="q15b",
     after=q15a,
     points=2,
-    claim="above .8 at variance .0001, below .05 from 1 to 1,000, all at 2,000 and 10,000",
-    test="mean share over runs at each variance",
-    runs=4,
-    pool=250,
-    margin=".992 (sd .004), 0, 1: over 12 standard errors",
-    measure=lambda f, rng, runs: np.stack(
-        [shaped(f(v, rng, runs), runs) for v in BELIEVED], axis=1
-    ),
+    claim="the rejected share follows the believed variance, the threshold and the particles",
+    test="mean share within 5 standard errors of a right experiment's at each of four settings, "
+    "scatter within a factor of 3.5 where there is any",
+    runs=16,
+    pool=900,
+    settings=_gates,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors, four means and their sum: 1e-4 by Student's law",
 )
-def rejected(variance, rng, runs):
-    """Share of 150 honest frames that a gate at 1e-4 rejects; known start, target stands still."""
-    bel = around(HOME, (runs, 300), rng, sigma=1.0)
-    sensor = pf.Position(np.sqrt(variance))
-    run = track(FILM[:150], bel, pf.FixedTarget(1.4), sensor, rng, gate=1e-4)
+def rejected(variance, threshold, M, rng, runs):
+    """Share of rejected frames, one per run."""
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=1.0)
+    motion, sensor = pf.FixedTarget(1.4), pf.Position(np.sqrt(variance))
+    run = lab.track(lab.film[:120], bel, motion, sensor, rng, gate=threshold)
     return run.rejected.mean(axis=0)
 
 
-rejected.holds(
-    "an overconfident sensor: more than .8 rejected",
-    lambda x: x[:, 0].mean() > 0.8 or f"{x[:, 0].mean():.2f}",
-)
-rejected.holds(
-    "in between: below .05",
-    lambda x: x[:, 1:4].mean(0).max() < 0.05 or f"{x.mean(0)[1:4].round(2)}",
-)
-rejected.holds(
-    "too modest: all rejected", lambda x: bool((x[:, 4:] == 1).all()) or f"{x.mean(0)[4:].round(2)}"
-)
-rejected.wrong("""counts: counts frames, where a share is asked for
+rejected.holds("the share follows variance, threshold and M", same_mean(5.0))
+rejected.holds("the runs scatter as independent filters do", same_scatter(3.5))
+
+
+@rejected.wrong("""counts frames, where a share is asked for
     A share lies between 0 and 1.
     Divide by the number of frames.
-    run.rejected.mean(axis=0), not sum.""")(
-    lambda v, rng, runs: 150 * rejected(v, rng, runs), when=lambda x: x.max() > 1
-)
-rejected.wrong("""accepted: gives the share that is accepted
+    run.rejected.mean(axis=0), not sum.""")
+def counts(variance, threshold, M, rng, runs):
+    return 120 * rejected(variance, threshold, M, rng, runs)
+
+
+@rejected.wrong("""gives the share that is accepted
     Your curve is upside down.
     rejected is True where the gate was closed.
-    run.rejected.mean(axis=0), without one minus.""")(
-    lambda v, rng, runs: 1 - rejected(v, rng, runs),
-    when=lambda x: x[:, 1:4].mean() > 0.95 and x[:, 4:].mean() < 0.05,
-)
+    run.rejected.mean(axis=0), without one minus.""")
+def accepted(variance, threshold, M, rng, runs):
+    return 1 - rejected(variance, threshold, M, rng, runs)
 
 
-@rejected.wrong(
-    """starts anywhere, where the mean likelihood is about 1/area for any sensor
-    Your gate never opens. How likely is any measurement if you know nothing?
-    1/area is 3.3e-6, far below the threshold of 1e-4.
-    Start around the truth: lab.around(lab.film.start[:2], (runs, 300), rng).""",
-    when=lambda x: x[:, 2:].mean() > 0.95 and x[:, 1].mean() > 0.02,
-)
-def from_anywhere(v, rng, runs):
-    run = track(
-        FILM[:150],
-        anywhere((runs, 300), rng),
-        pf.FixedTarget(1.4),
-        pf.Position(np.sqrt(v)),
-        rng,
-        gate=1e-4,
-    )
-    return run.rejected.mean(axis=0)
+def _share(bel, variance, threshold, rng, noise=1.4):
+    motion, sensor = pf.FixedTarget(noise), pf.Position(np.sqrt(variance))
+    return lab.track(lab.film[:120], bel, motion, sensor, rng, gate=threshold).rejected.mean(axis=0)
 
 
-rejected.wrong("""variance-as-sd: passes the variance where a standard deviation is wanted
-    Your gate is closed at 100 px^2 already. What is the sd there?
+@rejected.wrong("""starts anywhere, where the mean likelihood is about 1/area for any sensor
+    How likely is any measurement if you know nothing?
+    1/area is 3.3e-6, far below the threshold.
+    Start around the truth: lab.around(lab.film.start[:2], (runs, M), rng).""")
+def from_anywhere(variance, threshold, M, rng, runs):
+    bel = lab.anywhere((runs, M), rng)
+    return _share(bel, variance, threshold, rng)
+
+
+@rejected.wrong("""passes the variance where a standard deviation is wanted
+    For which variance would that make no difference?
     pf.Position wants a standard deviation; you get a variance.
-    pf.Position(np.sqrt(variance)).""")(
-    lambda v, rng, runs: rejected(v**2, rng, runs),
-    when=lambda x: x[:, 2:].mean() > 0.95 and x[:, 1].mean() <= 0.02,
-)
-rejected.wrong("""no-gate: has a gate that is never closed
+    pf.Position(np.sqrt(variance)).""")
+def variance_as_sd(variance, threshold, M, rng, runs):
+    return rejected(variance**2, threshold, M, rng, runs)
+
+
+@rejected.wrong("""has a gate that is never closed
     You reject nothing at any variance.
     Which argument of lab.track sets the threshold?
-    gate=1e-4.""")(lambda v, rng, runs: np.zeros(runs), when=lambda x: x.max() == 0)
+    gate=threshold.""")
+def no_gate(variance, threshold, M, rng, runs):
+    return rejected(variance, 0.0, M, rng, runs)
+
+
+@rejected.wrong("""has a gate at 1e-4, whatever it is asked
+    Does your function use the threshold?
+    The check chooses where the gate closes.
+    gate=threshold.""")
+def always_1e_4(variance, threshold, M, rng, runs):
+    return rejected(variance, 1e-4, M, rng, runs)
+
+
+@rejected.wrong("""has 300 particles, whatever it is asked
+    Does your function use M?
+    The check chooses the number of particles.
+    lab.around(lab.film.start[:2], (runs, M), rng).""")
+def always_300(variance, threshold, M, rng, runs):
+    return rejected(variance, threshold, 300, rng, runs)
+
+
+@rejected.refuses("the shares of the text")
+def told(variance, threshold, M, rng, runs):
+    at, share = [-4, -2, 0, 3, 3.3], [1.0, 0.122, 0.0, 0.0, 1.0]
+    return np.full(runs, np.interp(np.log10(variance), at, share))
+
+
+@rejected.refuses("none in between, all beyond the peak, and a guess below")
+def by_the_peak(variance, threshold, M, rng, runs):
+    beyond = 1 / (2 * np.pi * variance) < threshold
+    guess = np.clip(0.12 * 0.01 / variance + 0.02 * rng.standard_normal(runs), 0, 1)
+    return guess if variance < 0.1 else np.full(runs, float(beyond))
+
+
+@rejected.refuses("always half")
+def half(variance, threshold, M, rng, runs):
+    return np.full(runs, 0.5)
+
+
+@rejected.refuses("random in range")
+def guessed(variance, threshold, M, rng, runs):
+    return rng.random(runs)
+
+
+@rejected.refuses("one run, repeated")
+def one_run(variance, threshold, M, rng, runs):
+    return np.repeat(rejected(variance, threshold, M, rng, 1), runs)
+
+
+@rejected.refuses("half as many particles")
+def half_as_many(variance, threshold, M, rng, runs):
+    return rejected(variance, threshold, M // 2, rng, runs)
+
+
+@rejected.refuses("a target without process noise")
+def no_process_noise(variance, threshold, M, rng, runs):
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=1.0)
+    return _share(bel, variance, threshold, rng, noise=0.0)
+
+
+@rejected.refuses("the last frame only")
+def last_frame(variance, threshold, M, rng, runs):
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=1.0)
+    motion, sensor = pf.FixedTarget(1.4), pf.Position(np.sqrt(variance))
+    return lab.track(lab.film[:120], bel, motion, sensor, rng, gate=threshold).rejected[-1]
+
 
 q15c = Numeric(
-    """Variance at which even a perfect hit has a density of 1e-4
+    """Variance at which even a perfect hit has a density of {gate} per px^2
     What is the highest value of the density in two dimensions?
     The peak is 1/(2 pi variance).
-    variance = 1/(2 pi 1e-4).""",
-    1e4 / (2 * np.pi),
+    variance = 1/(2 pi {gate}).""",
+    lambda gate: 1 / (2 * np.pi * gate),
     tol=5.0,
     unit="px^2",
+    world={"gate": 1e-4},
+    draw=lambda rng: {"gate": int(rng.integers(10, 50)) / 1e5},
 )
 q15c.wrong("""one-dimension: uses the peak of a one-dimensional Gaussian
     The measurement has two components.
     In two dimensions the peak is 1/(2 pi variance), without a root.
-    variance = 1/(2 pi 1e-4).""")(
-    1e8 / (2 * np.pi), when=lambda x: abs(x / (1e8 / (2 * np.pi)) - 1) < 0.01
-)
+    variance = 1/(2 pi {gate}).""")(lambda gate: 1 / (2 * np.pi * gate**2))
 q15c.wrong("""deviation: is a standard deviation
     Square your number.
     The unit asked for is px^2.
-    variance = 1/(2 pi 1e-4).""")(
-    np.sqrt(1e4 / (2 * np.pi)), when=lambda x: abs(x - np.sqrt(1e4 / (2 * np.pi))) < 1
-)
+    variance = 1/(2 pi {gate}).""")(lambda gate: np.sqrt(1 / (2 * np.pi * gate)))
 q15c.wrong("""no-two-pi: leaves 2 pi out
     Write the constant of the density down.
     The peak is 1/(2 pi variance).
-    variance = 1/(2 pi 1e-4).""")(1e4)
+    variance = 1/(2 pi {gate}).""")(lambda gate: 1 / gate)
+q15c.wrong("""root-of-two-pi: has the root of 2 pi, as in one dimension
+    The measurement has two components: a factor for each.
+    In two dimensions the constant is 2 pi itself.
+    variance = 1/(2 pi {gate}).""")(lambda gate: 1 / (np.sqrt(2 * np.pi) * gate))
+q15c.wrong("""no-two: has pi where the peak has 2 pi
+    Write the constant of the density down.
+    The peak is 1/(2 pi variance).
+    variance = 1/(2 pi {gate}).""")(lambda gate: 1 / (np.pi * gate))

@@ -6,34 +6,20 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Prediction, Question, experiment
-from pfkit.labs.statistics import shaped
-from pfkit.labs.target import anywhere, around, target_log, track
+from pfkit.labs import lab4 as lab
+from pfkit.labs.response import same_mean, same_scatter
+from pfkit.labs.target import target_log
 
 Q9 = Question("Modelled sensor noise")
 
 FILM = target_log("fixed", "low")
-HOME = FILM.start[:2]
-VARIANCES = (1e-4, 1e-2, 1.0, 100.0, 1e4)
 
 
-def linear_weights(variance, rng, runs, M=300, frames=200):
-    """Errors (frames, runs) with weights in the linear domain; all zero becomes all equal."""
-    state = anywhere((runs, M), rng).state
-    errors = []
-    for k in range(frames):
-        state = state + 1.4 * rng.standard_normal(state.shape)
-        nu = FILM.z[k].reshape(2, 1, 1) - state
-        with np.errstate(under="ignore"):
-            w = np.exp(-0.5 * (nu**2).sum(axis=0) / variance)
-        w[w.sum(axis=1) == 0] = 1.0
-        ancestors = pf.systematic(w / w.sum(axis=1, keepdims=True), rng)
-        state = np.take_along_axis(state, ancestors[None], axis=-1)
-        errors.append(np.hypot(*(state.mean(axis=-1) - HOME[:, None])))
-    return np.array(errors)
-
-
-def _column(x):
-    return np.median(x, axis=0)
+def _sensors(rng):
+    """Believed variances: far too small, about right, too large, far too large."""
+    variance = 10 ** rng.uniform([-4, -0.3, 1.3, 2.6], [-3.5, 0.4, 1.9, 2.8])
+    M = rng.integers([60, 20, 25, 60], [90, 30, 40, 90])
+    return [(float(f"{v:.3g}"), int(m)) for v, m in zip(variance, M, strict=True)]
 
 
 q9a = Prediction("""True variance 1 px^2. Which believed variance gives the smallest error?
@@ -45,80 +31,145 @@ q9a = Prediction("""True variance 1 px^2. Which believed variance gives the smal
 
 @experiment(
     """Error against the believed sensor variance
-    One number per run: the mean error of frames 50 to 200.
+    One number per run: the mean error of frames 50 to 120.
     pf.Position wants a standard deviation; you get a variance.
     pf.Position(np.sqrt(variance)).""",
     id="q9b",
     after=q9a,
     points=2,
-    claim="understating by 100 or more copies the measurement (1.0 to 1.5 px); the "
-    "smallest of the five errors is at 100 px^2, below .7 px; at 10,000 it rises again",
-    test="medians over runs",
-    runs=12,
-    pool=500,
-    margin="1.20 px (sd .005); .454 (.015) against .7; 1.22 (.13) against .45: 5.8 sd",
-    measure=lambda f, rng, runs: np.stack(
-        [shaped(f(v, rng, runs), runs) for v in VARIANCES], axis=1
-    ),
+    claim="the error follows the believed variance and the number of particles",
+    test="mean within 5 standard errors of a right experiment's at each of four settings, "
+    "scatter within a factor of 3.5",
+    runs=24,
+    pool=900,
+    settings=_sensors,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors, four means and their sum: 1e-4 by Student's law",
 )
-def sensor_sweep(variance, rng, runs):
-    """Mean error of frames 50 to 200, one per run, if the sensor is believed to have it."""
-    bel = around(HOME, (runs, 200), rng, sigma=20.0)
+def sensor_sweep(variance, M, rng, runs):
+    """Mean error in px of frames 50 to 120, one per run."""
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=100.0)
     motion, sensor = pf.FixedTarget(1.4), pf.Position(np.sqrt(variance))
-    return track(FILM[:200], bel, motion, sensor, rng).error[50:].mean(axis=0)
+    return lab.track(lab.film[:120], bel, motion, sensor, rng).error[50:].mean(axis=0)
 
 
-sensor_sweep.holds(
-    "at .0001 and .01 the filter copies the measurement: 1.0 to 1.5 px",
-    lambda x: (
-        bool(((_column(x)[:2] > 1.0) & (_column(x)[:2] < 1.5)).all())
-        or f"{_column(x)[:2].round(2)} px"
-    ),
-)
-sensor_sweep.holds(
-    "at 100 the error is the smallest, below .7 px",
-    lambda x: (_column(x).argmin() == 3 and _column(x)[3] < 0.7) or f"{_column(x).round(2)} px",
-)
-sensor_sweep.holds(
-    "at 10,000 it is larger again",
-    lambda x: _column(x)[4] > _column(x)[3] or f"{_column(x).round(2)} px",
-)
-sensor_sweep.wrong("""variance-as-sd: passes the variance where a standard deviation is wanted
-    For which of the five variances would that make no difference?
+sensor_sweep.holds("the error follows variance and M", same_mean(5.0))
+sensor_sweep.holds("the runs scatter as independent filters do", same_scatter(3.5))
+
+
+def _settled(motion, sensor, M, rng, runs, first=50, film=FILM):
+    bel = lab.around(FILM.start[:2], (runs, M), rng, sigma=100.0)
+    return lab.track(film[:120], bel, motion, sensor, rng).error[first:].mean(axis=0)
+
+
+@sensor_sweep.wrong("""passes the variance where a standard deviation is wanted
+    For which variance would that make no difference?
     At 100 px^2 the sensor of your filter has an sd of 100 px.
-    pf.Position(np.sqrt(variance)).""")(
-    lambda v, rng, runs: sensor_sweep(v**2, rng, runs),
-    when=lambda x: _column(x)[3] > 0.7 and 0.9 < _column(x)[1] < 2,
-)
-sensor_sweep.wrong("""variance-unused: does not use the variance: all five errors are alike
-    Your five errors agree.
+    pf.Position(np.sqrt(variance)).""")
+def variance_as_sd(variance, M, rng, runs):
+    return sensor_sweep(variance**2, M, rng, runs)
+
+
+@sensor_sweep.wrong("""believes 9 px^2, whatever it is asked
+    Does your function use the variance?
     The variance is what the sensor believes.
-    pf.Position(np.sqrt(variance)).""")(
-    lambda v, rng, runs: sensor_sweep(9.0, rng, runs), when=lambda x: np.ptp(_column(x)) < 0.1
-)
+    pf.Position(np.sqrt(variance)).""")
+def variance_unused(variance, M, rng, runs):
+    return sensor_sweep(9.0, M, rng, runs)
 
 
-@sensor_sweep.wrong(
-    """varies the process noise instead of the sensor noise
-    Your error at .01 is smaller than at 100. Which noise did you change?
+@sensor_sweep.wrong("""varies the process noise instead of the sensor noise
+    Which noise did you change?
     The question changes what the sensor model believes.
-    pf.FixedTarget(1.4) stays; pf.Position(np.sqrt(variance)) changes.""",
-    when=lambda x: _column(x)[1] < 0.5 and _column(x)[4] > 3,
-)
-def process_noise(variance, rng, runs):
-    bel = around(HOME, (runs, 200), rng, sigma=20.0)
-    motion, sensor = pf.FixedTarget(np.sqrt(variance)), pf.Position(1.0)
-    return track(FILM[:200], bel, motion, sensor, rng).error[50:].mean(axis=0)
+    pf.FixedTarget(1.4) stays; pf.Position(np.sqrt(variance)) changes.""")
+def process_noise(variance, M, rng, runs):
+    return _settled(pf.FixedTarget(np.sqrt(variance)), pf.Position(1.0), M, rng, runs)
 
 
-sensor_sweep.wrong("""linear-weights: loses all weights to underflow and then resamples at
+@sensor_sweep.wrong("""has 200 particles, whatever it is asked
+    Does your function use M?
+    The check chooses the number of particles.
+    lab.around(lab.film.start[:2], (runs, M), rng, sigma=100.0).""")
+def always_200(variance, M, rng, runs):
+    return sensor_sweep(variance, 200, rng, runs)
+
+
+@sensor_sweep.wrong("""averages over all frames, the search included
+    What do the first frames cost, before the filter has found the target?
+    The question asks for frames 50 to 120.
+    error[50:].mean(axis=0).""")
+def all_frames(variance, M, rng, runs):
+    return _settled(pf.FixedTarget(1.4), pf.Position(np.sqrt(variance)), M, rng, runs, first=0)
+
+
+@sensor_sweep.wrong("""linear-weights: loses all weights to underflow and then resamples at
          random
     Your errors at small variances are tens of pixels. What is exp(-1000)?
     All weights were 0, and 'all zero, so all equal' forgets the measurement.
-    Work with log-weights, as pf.update does.""")(
-    lambda v, rng, runs: linear_weights(v, rng, runs)[50:].mean(axis=0),
-    when=lambda x: _column(x)[0] > 5,
-)
+    Work with log-weights, as pf.update does.""")
+def linear_weights(variance, M, rng, runs):
+    state = lab.around(FILM.start[:2], (runs, M), rng, sigma=100.0).state
+    errors = []
+    for z in FILM.z[:120]:
+        state = state + 1.4 * rng.standard_normal(state.shape)
+        d2 = ((z.reshape(2, 1, 1) - state) ** 2).sum(axis=0)
+        with np.errstate(under="ignore"):
+            w = np.exp(-d2 / (2 * variance))
+        w[w.sum(axis=1) == 0] = 1.0
+        w = w / w.sum(axis=1, keepdims=True)
+        mean = (w * state).sum(axis=-1)
+        errors.append(np.hypot(*(mean - FILM.start[:2, None])))
+        state = np.take_along_axis(state, pf.systematic(w, rng)[None], axis=-1)
+    return np.array(errors)[50:].mean(axis=0)
+
+
+def _drawn(variance):
+    """The median errors that the text's figure shows, read off for any variance."""
+    at, error = [-4, -2, 0, 2, 4], [1.19, 1.19, 0.93, 0.47, 1.13]
+    return np.interp(np.log10(variance), at, error)
+
+
+@sensor_sweep.refuses("the errors of the figure")
+def told(variance, M, rng, runs):
+    return np.full(runs, _drawn(variance))
+
+
+@sensor_sweep.refuses("the errors of the figure, with scatter")
+def told_with_scatter(variance, M, rng, runs):
+    return _drawn(variance) * (1 + 0.05 * rng.standard_normal(runs))
+
+
+@sensor_sweep.refuses("random in range")
+def guessed(variance, M, rng, runs):
+    return rng.uniform(0.4, 1.4, runs)
+
+
+@sensor_sweep.refuses("half as many particles")
+def half_as_many(variance, M, rng, runs):
+    return sensor_sweep(variance, M // 2, rng, runs)
+
+
+@sensor_sweep.refuses("one run, repeated")
+def one_run(variance, M, rng, runs):
+    return np.repeat(sensor_sweep(variance, M, rng, 1), runs)
+
+
+@sensor_sweep.refuses("the error of the measurements")
+def measured(variance, M, rng, runs):
+    z = np.array(FILM.z[50:120])[:, :, 0]
+    return np.full(runs, np.hypot(*(z - FILM.start[:2]).T).mean())
+
+
+@sensor_sweep.refuses("the last frame only")
+def last_frame(variance, M, rng, runs):
+    return _settled(pf.FixedTarget(1.4), pf.Position(np.sqrt(variance)), M, rng, runs, first=119)
+
+
+@sensor_sweep.refuses("no process noise")
+def no_process_noise(variance, M, rng, runs):
+    return _settled(pf.FixedTarget(0.0), pf.Position(np.sqrt(variance)), M, rng, runs)
+
 
 q9c = Choice("""With weights exp(-d^2/2 sigma^2), all 0 at sigma^2 = .0001: what failed?
     a  Statistics: a sensor that is too sure makes any filter diverge
@@ -133,9 +184,13 @@ q9c = Choice("""With weights exp(-d^2/2 sigma^2), all 0 at sigma^2 = .0001: what
 Q10 = Question("Modelled process noise")
 
 
-def _motion(f, rng, runs):
-    pairs = [shaped(f(v, rng, runs), 2, runs) for v in VARIANCES]
-    return np.stack(pairs, axis=2).transpose(1, 0, 2)  # (runs, metric, variance)
+def _motions(rng):
+    """Process variances: too small to search, about right, too large; particles and frames."""
+    variance = 10 ** rng.uniform([-2.3, -0.4, 1.7], [-1.7, 0.4, 2.3])
+    M = rng.integers([100, 80, 80], [150, 120, 120])
+    frames = rng.integers(120, 180, 3)
+    chosen = zip(variance, M, frames, strict=True)
+    return [(float(f"{v:.3g}"), int(m), int(t)) for v, m, t in chosen]
 
 
 q10a = Prediction("""Which process variance wins, by the mean of all frames (A) and of the last
@@ -154,40 +209,120 @@ q10a = Prediction("""Which process variance wins, by the mean of all frames (A) 
     id="q10b",
     after=q10a,
     points=2,
-    claim="of .0001, .01, 1, 100, 10,000 px^2 the mean over all frames is best at 1, the "
-    "mean of the last hundred at .01",
-    test="smallest median over runs",
-    runs=10,
-    pool=250,
-    margin="2.4 px (sd .6) against .58; .19 (.03) against .48: 5.6 sd of the logarithm",
-    measure=_motion,
+    claim="both errors follow the modelled variance, the particles and the frames",
+    test="both means within 5 standard errors of a right experiment's at each of three settings, "
+    "scatter within a factor of 3.5",
+    runs=24,
+    pool=900,
+    settings=_motions,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors, six means and their sum: 1.5e-4 by Student's law",
 )
-def motion_sweep(variance, rng, runs):
-    """Mean error of all 400 frames, and of the last 100: two rows, one number per run."""
-    bel = around(HOME, (runs, 200), rng, sigma=100.0)
+def motion_sweep(variance, M, frames, rng, runs):
+    """Mean error of all frames and of the last hundred: shape (2, runs)."""
+    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=100.0)
     motion, sensor = pf.FixedTarget(np.sqrt(variance)), pf.Position(5.0)
-    error = track(FILM[:400], bel, motion, sensor, rng).error
+    error = lab.track(lab.film[:frames], bel, motion, sensor, rng).error
     return np.array([error.mean(axis=0), error[-100:].mean(axis=0)])
 
 
-motion_sweep.holds(
-    "all frames: the best is 1 px^2",
-    lambda x: _column(x[:, 0]).argmin() == 2 or f"{_column(x[:, 0]).round(2)} px",
-)
-motion_sweep.holds(
-    "last hundred frames: the best is .01 px^2",
-    lambda x: _column(x[:, 1]).argmin() == 1 or f"{_column(x[:, 1]).round(2)} px",
-)
-motion_sweep.wrong("""variance-as-sd: passes the variance where a standard deviation is wanted
-    For which of the five variances would that make no difference?
+motion_sweep.holds("both errors follow variance, M and frames", same_mean(5.0))
+motion_sweep.holds("the runs scatter as independent filters do", same_scatter(3.5))
+
+
+def _both(motion, sensor, M, frames, rng, runs, sigma=100.0, last=100):
+    bel = lab.around(FILM.start[:2], (runs, M), rng, sigma=sigma)
+    error = lab.track(FILM[:frames], bel, motion, sensor, rng).error
+    return np.array([error.mean(axis=0), error[-last:].mean(axis=0)])
+
+
+@motion_sweep.wrong("""passes the variance where a standard deviation is wanted
+    For which variance would that make no difference?
     At 100 px^2 your particles jump 100 px per frame.
-    pf.FixedTarget(np.sqrt(variance)).""")(
-    lambda v, rng, runs: motion_sweep(v**2, rng, runs), when=lambda x: _column(x[:, 1])[3] > 3
-)
-motion_sweep.wrong("""rows-swapped: returns the rows in the other order
+    pf.FixedTarget(np.sqrt(variance)).""")
+def variance_for_sd(variance, M, frames, rng, runs):
+    return motion_sweep(variance**2, M, frames, rng, runs)
+
+
+@motion_sweep.wrong("""returns the rows in the other order
     Which row holds the start of the film, where errors are large?
     All frames first, then the last hundred.
-    np.array([error.mean(axis=0), error[-100:].mean(axis=0)]).""")(
-    lambda v, rng, runs: motion_sweep(v, rng, runs)[::-1],
-    when=lambda x: _column(x[:, 0]).argmin() == 1 and _column(x[:, 1]).argmin() == 2,
-)
+    np.array([error.mean(axis=0), error[-100:].mean(axis=0)]).""")
+def rows_swapped(variance, M, frames, rng, runs):
+    return motion_sweep(variance, M, frames, rng, runs)[::-1]
+
+
+@motion_sweep.wrong("""models a process variance of 2 px^2, whatever it is asked
+    Does your function use the variance?
+    The check chooses the modelled noise.
+    pf.FixedTarget(np.sqrt(variance)).""")
+def always_two(variance, M, frames, rng, runs):
+    return motion_sweep(1.4**2, M, frames, rng, runs)
+
+
+@motion_sweep.wrong("""varies the sensor noise instead of the process noise
+    Which noise did you change?
+    The sensor is fixed at sd 5 px here.
+    pf.FixedTarget(np.sqrt(variance)) changes; pf.Position(5.0) stays.""")
+def sensor_noise(variance, M, frames, rng, runs):
+    return _both(pf.FixedTarget(1.4), pf.Position(np.sqrt(variance)), M, frames, rng, runs)
+
+
+@motion_sweep.wrong("""scores the first hundred frames, where the last are asked for
+    Your second row still holds the search.
+    A slice that counts from the end starts with a minus.
+    error[-100:].mean(axis=0).""")
+def first_hundred(variance, M, frames, rng, runs):
+    bel = lab.around(FILM.start[:2], (runs, M), rng, sigma=100.0)
+    motion, sensor = pf.FixedTarget(np.sqrt(variance)), pf.Position(5.0)
+    error = lab.track(FILM[:frames], bel, motion, sensor, rng).error
+    return np.array([error.mean(axis=0), error[:100].mean(axis=0)])
+
+
+@motion_sweep.wrong("""starts close to the truth, so there is nothing to search for
+    Where do your particles lie before the first frame?
+    The start is poor: sd 100 px.
+    lab.around(lab.film.start[:2], (runs, M), rng, sigma=100.0).""")
+def good_start(variance, M, frames, rng, runs):
+    motion, sensor = pf.FixedTarget(np.sqrt(variance)), pf.Position(5.0)
+    return _both(motion, sensor, M, frames, rng, runs, sigma=1.0)
+
+
+@motion_sweep.refuses("the errors of the text's table")
+def told_rows(variance, M, frames, rng, runs):
+    at = np.log10(variance)
+    rows = ([3.58, 0.87, 0.51, 1.22, 7.36], [3.25, 0.18, 0.47, 1.20, 7.76])
+    return np.array([np.full(runs, np.interp(at, [-4, -2, 0, 2, 4], row)) for row in rows])
+
+
+@motion_sweep.refuses("the same with scatter")
+def told_rows_with_scatter(variance, M, frames, rng, runs):
+    noise = 1 + 0.1 * rng.standard_normal((2, runs))
+    return told_rows(variance, M, frames, rng, runs) * noise
+
+
+@motion_sweep.refuses("random in range")
+def guessed_rows(variance, M, frames, rng, runs):
+    return rng.uniform(0.2, 4.0, (2, runs))
+
+
+@motion_sweep.refuses("half as many particles")
+def half_the_particles(variance, M, frames, rng, runs):
+    return motion_sweep(variance, M // 2, frames, rng, runs)
+
+
+@motion_sweep.refuses("one run, repeated")
+def one_run_twice(variance, M, frames, rng, runs):
+    return np.repeat(motion_sweep(variance, M, frames, rng, 1), runs, axis=1)
+
+
+@motion_sweep.refuses("the last score in both rows")
+def one_score(variance, M, frames, rng, runs):
+    return motion_sweep(variance, M, frames, rng, runs)[[1, 1]]
+
+
+@motion_sweep.refuses("the last frame only")
+def the_last_frame(variance, M, frames, rng, runs):
+    motion, sensor = pf.FixedTarget(np.sqrt(variance)), pf.Position(5.0)
+    return _both(motion, sensor, M, frames, rng, runs, last=1)

@@ -6,8 +6,9 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Prediction, Question, experiment
-from pfkit.labs.statistics import shaped
-from pfkit.labs.target import around, target_log, track
+from pfkit.labs import lab4 as lab
+from pfkit.labs.response import same_mean, same_scatter
+from pfkit.labs.target import around, target_log
 
 Q11 = Question("Motion model and process noise")
 
@@ -26,17 +27,17 @@ def start_of(name, log, shape, rng):
     return around(log.start[: 2 if name == "fixed" else 3], shape, rng, sigma=20.0)
 
 
-RATIOS = (0.0025, 0.01, 0.09, 0.25)
 MODELS = ("fixed", "line", "circle")
 
 
-def _ratios(f, rng, runs):
-    rows = [[shaped(f(m, r, rng, runs), runs) for r in RATIOS] for m in MODELS]
-    return np.array(rows).transpose(2, 0, 1)  # (runs, model, ratio)
-
-
-def _best(x):
-    return [RATIOS[k] for k in np.median(x, axis=0).argmin(axis=1)]
+def _ratios(rng):
+    """Each model with two ratios: fixed with less than it wants, the others with more."""
+    ratio = 10 ** rng.uniform(
+        [-1.9, -1.1, -2.4, -1.1, -2.4, -1.1], [-1.5, -0.7, -1.9, -0.7, -1.9, -0.7]
+    )
+    M = rng.integers(20, 40, 6)
+    models = np.repeat(MODELS, 2)
+    return [(str(m), float(f"{r:.2g}"), int(n)) for m, r, n in zip(models, ratio, M, strict=True)]
 
 
 q11a = Prediction("""On the circling target: which model wants the largest process noise?
@@ -47,160 +48,247 @@ q11a = Prediction("""On the circling target: which model wants the largest proce
 
 
 @experiment(
-    """Best ratio of process to sensor variance, per model
-    One number per run: the mean error of frames 50 to 150.
+    """Error against the ratio of process to sensor variance, per model
+    One number per run: the mean error of frames 50 to 120.
     lab.model_of(name, sigma) and lab.start_of(name, log, shape, rng) help.
     sigma = np.sqrt(400 * ratio).""",
     id="q11b",
     after=q11a,
     points=2,
-    claim="of .0025, .01, .09, .25 the fixed model does best at .09, line and circle at "
-    ".01 or less",
-    test="smallest median over runs, per model; fixed above 40 px at .0025",
-    runs=6,
-    pool=250,
-    margin="fixed 10.6 px (sd .10) against 12.3; line and circle gain 2.4 and 3.3 px: "
-    "9 sd; 85 px (3.4 per run) against 40",
-    measure=_ratios,
+    claim="the error follows the model, the ratio and the number of particles",
+    test="mean within 5 standard errors of a right experiment's at each of six settings, "
+    "scatter within a factor of 3.5",
+    runs=16,
+    pool=600,
+    settings=_ratios,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors, six means and their sum: 1.6e-4 by Student's law",
 )
-def ratio_sweep(model, ratio, rng, runs):
-    """Mean error of frames 50 to 150 on the circle; process variance = ratio * 400 px^2."""
-    bel = start_of(model, CIRCLE, (runs, 200), rng)
-    motion = model_of(model, np.sqrt(400 * ratio))
-    return track(CIRCLE[:150], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+def ratio_sweep(model, ratio, M, rng, runs):
+    """Mean error in px of frames 50 to 120 on the circle, one per run."""
+    bel = lab.start_of(model, lab.circle, (runs, M), rng)
+    motion = lab.model_of(model, np.sqrt(400 * ratio))
+    run = lab.track(lab.circle[:120], bel, motion, pf.Position(20.0), rng)
+    return run.error[50:].mean(axis=0)
 
 
-ratio_sweep.holds(
-    "fixed does best at .09", lambda x: _best(x)[0] == 0.09 or f"best at {_best(x)[0]}"
-)
-ratio_sweep.holds(
-    "at .0025 fixed has lost the target: above 40 px",
-    lambda x: np.median(x[:, 0, 0]) > 40 or f"the error is {np.median(x[:, 0, 0]):.1f} px",
-)
-ratio_sweep.holds(
-    "line does best at .01 or less", lambda x: _best(x)[1] <= 0.01 or f"best at {_best(x)[1]}"
-)
-ratio_sweep.holds(
-    "circle does best at .01 or less", lambda x: _best(x)[2] <= 0.01 or f"best at {_best(x)[2]}"
-)
-ratio_sweep.wrong("""ratio-unused: does not use the ratio: all four errors are alike
-    Your four errors of one model agree.
+ratio_sweep.holds("the error follows model, ratio and M", same_mean(5.0))
+ratio_sweep.holds("the runs scatter as independent filters do", same_scatter(3.5))
+
+
+@ratio_sweep.wrong("""has a ratio of .05, whatever it is asked
+    Does your function use the ratio?
     The ratio says how much process noise the model has.
-    lab.model_of(model, np.sqrt(400 * ratio)).""")(
-    lambda m, r, rng, runs: ratio_sweep(m, 0.01, rng, runs),
-    when=lambda x: np.ptp(np.median(x[:, 1:], axis=0), axis=1).max() < 2,
-)
-ratio_sweep.wrong("""ratio-as-sd: takes ratio times 400 as a standard deviation
+    lab.model_of(model, np.sqrt(400 * ratio)).""")
+def ratio_unused(model, ratio, M, rng, runs):
+    return ratio_sweep(model, 0.05, M, rng, runs)
+
+
+@ratio_sweep.wrong("""takes ratio times 400 as a standard deviation
     How far do your particles jump in one frame at ratio .25?
     The ratio is one of variances.
-    sigma = np.sqrt(400 * ratio).""")(
-    lambda m, r, rng, runs: ratio_sweep(m, 400 * r**2, rng, runs),
-    when=lambda x: (
-        _best(x)[0] <= 0.01
-        and np.median(x[:, 0, 3]) > 14
-        and np.ptp(np.median(x[:, 1:], axis=0), axis=1).max() >= 2
-    ),
-)
-ratio_sweep.wrong("""ratio-of-deviations: takes the ratio as one of standard deviations
+    sigma = np.sqrt(400 * ratio).""")
+def ratio_as_sd(model, ratio, M, rng, runs):
+    return ratio_sweep(model, 400 * ratio**2, M, rng, runs)
+
+
+@ratio_sweep.wrong("""takes the ratio as one of standard deviations
     Your particles jump less than the question says. What is 20 px squared?
     Process variance is ratio times 400 px^2.
-    sigma = np.sqrt(400 * ratio).""")(
-    lambda m, r, rng, runs: ratio_sweep(m, r**2, rng, runs), when=lambda x: _best(x)[0] == 0.25
-)
-ratio_sweep.wrong("""one-model: does not use its first argument: all models are alike
-    Your three rows agree.
+    sigma = np.sqrt(400 * ratio).""")
+def ratio_of_deviations(model, ratio, M, rng, runs):
+    return ratio_sweep(model, ratio**2, M, rng, runs)
+
+
+@ratio_sweep.wrong("""does not use its first argument: all models are the fixed one
+    Does your function use the model?
     The name says which motion model to use.
-    lab.model_of(model, sigma).""")(
-    lambda m, r, rng, runs: ratio_sweep("fixed", r, rng, runs),
-    when=lambda x: _best(x) == [0.09] * 3,
-)
+    lab.model_of(model, sigma).""")
+def one_model(model, ratio, M, rng, runs):
+    return ratio_sweep("fixed", ratio, M, rng, runs)
+
+
+@ratio_sweep.wrong("""has 200 particles, whatever it is asked
+    Does your function use M?
+    The check chooses the number of particles.
+    lab.start_of(model, lab.circle, (runs, M), rng).""")
+def always_200(model, ratio, M, rng, runs):
+    return ratio_sweep(model, ratio, 200, rng, runs)
+
+
+@ratio_sweep.wrong("""has the process sd of a sensor with variance 1 px^2
+    The ratio of which two variances is it?
+    The sensor variance on this film is 20 px squared.
+    sigma = np.sqrt(400 * ratio).""")
+def of_one_pixel(model, ratio, M, rng, runs):
+    return ratio_sweep(model, ratio / 400, M, rng, runs)
+
+
+def _follow(model, ratio, M, rng, runs, film=CIRCLE, first=50, sensor=20.0):
+    bel = start_of(model, film, (runs, M), rng)
+    motion = model_of(model, np.sqrt(400 * ratio))
+    return lab.track(film[:120], bel, motion, pf.Position(sensor), rng).error[first:].mean(axis=0)
+
+
+@ratio_sweep.refuses("the errors of the figure")
+def told(model, ratio, M, rng, runs):
+    row = {"fixed": [85.9, 27.2, 10.7, 12.4], "line": [7.4, 8.0, 10.5, 12.7]}
+    drawn = row.get(model, [5.9, 6.2, 9.5, 12.3])
+    return np.full(runs, np.interp(np.log(ratio), np.log([0.0025, 0.01, 0.09, 0.25]), drawn))
+
+
+@ratio_sweep.refuses("the errors of the figure, with scatter")
+def told_with_scatter(model, ratio, M, rng, runs):
+    return told(model, ratio, M, rng, runs) * (1 + 0.08 * rng.standard_normal(runs))
+
+
+@ratio_sweep.refuses("random in range")
+def guessed(model, ratio, M, rng, runs):
+    return rng.uniform(5, 20, runs)
+
+
+@ratio_sweep.refuses("a third of the particles")
+def third(model, ratio, M, rng, runs):
+    return ratio_sweep(model, ratio, M // 3, rng, runs)
+
+
+@ratio_sweep.refuses("one run, repeated")
+def one_run(model, ratio, M, rng, runs):
+    return np.repeat(ratio_sweep(model, ratio, M, rng, 1), runs)
+
+
+@ratio_sweep.refuses("the film with noise of 1 px")
+def low_noise(model, ratio, M, rng, runs):
+    return _follow(model, ratio, M, rng, runs, film=target_log("circle", "low"))
+
+
+@ratio_sweep.refuses("the last frame only")
+def last_frame(model, ratio, M, rng, runs):
+    return _follow(model, ratio, M, rng, runs, first=119)
+
+
+@ratio_sweep.refuses("a sensor believed at 5 px")
+def sure_sensor(model, ratio, M, rng, runs):
+    return _follow(model, ratio, M, rng, runs, sensor=5.0)
+
 
 Q12 = Question("Precision and number of particles")
 
-SIGMA = {"fixed": 6.0, "line": 1.0, "circle": 0.5}
 
-
-def _sizes(f, rng, runs):
-    rows = [[shaped(f(m, M, rng, runs), runs) for M in (20, 160)] for m in MODELS]
-    return np.array(rows).transpose(2, 0, 1)  # (runs, model, size)
-
-
-def _typical(x):
-    return np.median(x, axis=0)
+def _sizes(rng):
+    """Each model with few particles, fixed and circle with many, too."""
+    M = rng.integers([10, 15, 12, 120, 60], [20, 25, 20, 200, 120])
+    models = (*MODELS, "fixed", "circle")
+    return [(m, int(n)) for m, n in zip(models, M, strict=True)]
 
 
 @experiment(
-    """Three models with 20 and with 160 particles
-    One number per run: the mean error of frames 50 to 250.
-    Use the noise of the table in the text for each model.
+    """Three models with few and with many particles
+    One number per run: the mean error of frames 50 to 150.
+    Use the noise of the text for each model.
     lab.model_of(model, sigma, sigma_theta); lab.start_of(model, log, shape, rng).""",
     id="q12a",
     points=2,
-    claim="a worse model has a larger error that no number of particles removes; "
-    "the circle with 20 particles beats the line with 160, which beats fixed with 160",
-    test="medians over runs, in this order, with gaps of at least 1 px",
-    runs=20,
-    pool=500,
-    margin="gaps 2.8 px (sd .32) and 4.0 (.10) against 1; gain 1.1 (.16) between .3 and 2: 5 sd",
-    measure=_sizes,
+    claim="the error follows the model and the number of particles",
+    test="mean within 5 standard errors of a right experiment's at each of five settings, "
+    "scatter within a factor of 2.5",
+    runs=24,
+    pool=900,
+    settings=_sizes,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors, five means and their sum: 6e-5 by Student's law",
 )
 def error_with(model, M, rng, runs):
-    """Mean error of frames 50 to 250 on the circle, each model with noise that suits it."""
-    bel = start_of(model, CIRCLE, (runs, M), rng)
-    motion = model_of(model, SIGMA[model], 0.01 if model == "circle" else 0.05)
-    return track(CIRCLE[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+    """Mean error in px of frames 50 to 150, each model with noise that suits it."""
+    sigma, sigma_theta = {"fixed": (6.0, 0.0), "line": (1.0, 0.05), "circle": (0.5, 0.01)}[model]
+    bel = lab.start_of(model, lab.circle, (runs, M), rng)
+    motion = lab.model_of(model, sigma, sigma_theta)
+    run = lab.track(lab.circle[:150], bel, motion, pf.Position(20.0), rng)
+    return run.error[50:].mean(axis=0)
 
 
-error_with.holds(
-    "circle with 20 at least 1 px better than line with 160",
-    lambda x: (
-        _typical(x)[2, 0] < _typical(x)[1, 1] - 1
-        or f"{_typical(x)[2, 0]:.1f} and {_typical(x)[1, 1]:.1f} px"
-    ),
-)
-error_with.holds(
-    "line with 160 at least 1 px better than fixed with 160",
-    lambda x: (
-        _typical(x)[1, 1] < _typical(x)[0, 1] - 1
-        or f"{_typical(x)[1, 1]:.1f} and {_typical(x)[0, 1]:.1f} px"
-    ),
-)
-error_with.holds(
-    "fixed with 160 between 9 and 14 px",
-    lambda x: 9 < _typical(x)[0, 1] < 14 or f"{_typical(x)[0, 1]:.1f} px",
-)
-error_with.holds(
-    "fixed gains .3 to 2 px from eight times the particles",
-    lambda x: 0.3 < _typical(x)[0, 0] - _typical(x)[0, 1] < 2 or f"{_typical(x)[0].round(1)} px",
-)
-error_with.wrong("""number-unused: does not use the number of particles
-    Your errors with 20 and with 160 particles agree.
+error_with.holds("the error follows model and M", same_mean(5.0))
+error_with.holds("the runs scatter as independent filters do", same_scatter(2.5))
+
+
+@error_with.wrong("""does not use the number of particles
+    Your errors with few and with many particles agree.
     Where does M enter?
-    lab.start_of(model, lab.circle, (runs, M), rng).""")(
-    lambda m, M, rng, runs: error_with(m, 200, rng, runs),
-    when=lambda x: np.abs(_typical(x)[:2, 0] - _typical(x)[:2, 1]).max() < 0.4,
-)
+    lab.start_of(model, lab.circle, (runs, M), rng).""")
+def number_unused(model, M, rng, runs):
+    return error_with(model, 200, rng, runs)
 
 
-@error_with.wrong(
-    """gives all models the noise that suits the fixed one
+def _with_noise(model, M, rng, runs, sigma, sigma_theta, first=50, frames=150):
+    bel = start_of(model, CIRCLE, (runs, M), rng)
+    motion = model_of(model, sigma, sigma_theta)
+    run = lab.track(CIRCLE[:frames], bel, motion, pf.Position(20.0), rng)
+    return run.error[first:].mean(axis=0)
+
+
+@error_with.wrong("""gives all models the noise that suits the fixed one
     Which process noise does your circle have?
     An accurate model needs little noise; large noise throws that away.
-    Use sigma 6, 1 and .5 px for fixed, line and circle.""",
-    when=lambda x: _typical(x)[2, 1] > 6,
-)
-def _same_noise(m, M, rng, runs, sigma=6.0):
-    bel = start_of(m, CIRCLE, (runs, M), rng)
-    motion = model_of(m, sigma, 0.05)
-    return track(CIRCLE[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+    Use sigma 6, 1 and .5 px for fixed, line and circle.""")
+def same_noise(model, M, rng, runs):
+    return _with_noise(model, M, rng, runs, 6.0, 0.05)
 
 
-error_with.wrong("""small-noise: gives all models the small noise that suits the circle
+@error_with.wrong("""gives all models the small noise that suits the circle
     Your fixed model has lost the target.
     A target that moves 2 px per frame leaves particles that hardly move.
-    Use sigma 6, 1 and .5 px for fixed, line and circle.""")(
-    lambda m, M, rng, runs: _same_noise(m, M, rng, runs, 0.5), when=lambda x: _typical(x)[0, 1] > 30
-)
+    Use sigma 6, 1 and .5 px for fixed, line and circle.""")
+def small_noise(model, M, rng, runs):
+    return _with_noise(model, M, rng, runs, 0.5, 0.01)
+
+
+@error_with.wrong("""follows the target with the circle, whatever model it is asked for
+    Does your function use the model?
+    The name says which motion model to use.
+    lab.model_of(model, sigma, sigma_theta).""")
+def always_circle(model, M, rng, runs):
+    return error_with("circle", M, rng, runs)
+
+
+@error_with.refuses("the errors of the text")
+def told_errors(model, M, rng, runs):
+    few, many = {"fixed": (12.0, 11.4), "line": (9.0, 7.1), "circle": (3.2, 3.3)}[model]
+    return np.full(runs, few if M < 60 else many)
+
+
+@error_with.refuses("the errors of the text, with scatter")
+def told_errors_with_scatter(model, M, rng, runs):
+    return told_errors(model, M, rng, runs) * (1 + 0.08 * rng.standard_normal(runs))
+
+
+@error_with.refuses("random in range")
+def guessed_errors(model, M, rng, runs):
+    return rng.uniform(3, 13, runs)
+
+
+@error_with.refuses("half as many particles")
+def half_as_many(model, M, rng, runs):
+    return error_with(model, M // 2, rng, runs)
+
+
+@error_with.refuses("one run, repeated")
+def one_filter(model, M, rng, runs):
+    return np.repeat(error_with(model, M, rng, 1), runs)
+
+
+@error_with.refuses("the last frame only")
+def at_the_end(model, M, rng, runs):
+    sigma, sigma_theta = {"fixed": (6.0, 0.0), "line": (1.0, 0.05), "circle": (0.5, 0.01)}[model]
+    return _with_noise(model, M, rng, runs, sigma, sigma_theta, first=149)
+
+
+@error_with.refuses("an error that falls with the root of M")
+def by_the_root(model, M, rng, runs):
+    one = {"fixed": 45.0, "line": 35.0, "circle": 20.0}[model] / np.sqrt(M)
+    return one * (1 + 0.1 * rng.standard_normal(runs))
+
 
 q12b = Choice("""Why does the line with 160 particles not reach the circle with 20?
     a  160 particles are too few for three dimensions

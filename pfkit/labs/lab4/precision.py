@@ -6,93 +6,161 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Question, experiment
-from pfkit.labs.lab4.motion_models import CIRCLE, MODELS, SIGMA, model_of, start_of
-from pfkit.labs.statistics import rng_of, shaped, z_of_mean
-from pfkit.labs.target import target_log, track
+from pfkit.labs import lab4 as lab
+from pfkit.labs.lab4.motion_models import CIRCLE, MODELS
+from pfkit.labs.response import same_mean, same_scatter
 
 Q14 = Question("Best precision under noise of 20 px")
 
 
-def _paired(f, rng, runs):
-    seed = int(rng.integers(2**31))  # the same films for all three models
-    return np.stack([shaped(f(m, rng_of(seed), runs), runs) for m in MODELS], axis=1)
+def measurement_error(films: pf.Log) -> np.ndarray:
+    """Distance of each measurement from the truth in px: (frames, films)."""
+    assert films.truth is not None
+    off = np.stack(films.z).reshape(len(films), 2, -1) - films.truth[:2].T[..., None]
+    return np.hypot(off[:, 0], off[:, 1])
+
+
+def _models(rng):
+    """Fixed with less process noise than suits it, the others with more; few particles."""
+    sigma = rng.uniform([2.9, 3.5, 2.5], [3.4, 4.5, 3.5])
+    M = rng.integers([15, 12, 8], [25, 16, 13])
+    return [(m, float(f"{s:.2g}"), int(n)) for m, s, n in zip(MODELS, sigma, M, strict=True)]
 
 
 @experiment(
-    """Fixed, line, circle: paired over 20 films
-    One number per run: the mean error of frames 50 to 250.
-    The seed of the films comes from rng, so the three models see the same films.
+    """Fixed, line, circle: a film of its own for each run
+    Two rows: mean errors of the filter and of the measurements, frames 50 to 150.
+    The seed of the films comes from rng.
     lab.target_log('circle', 'high', seed=int(rng.integers(2**31)), runs=runs).""",
     id="q14a",
     points=2,
-    claim="the better the model, the smaller the error, film by film; fixed is between "
-    "8 and 14 px, circle below 6",
-    test="paired z > 3 for fixed - line and for line - circle; means in the bands; errors "
-    "of fixed differ from film to film by an sd above .35 px",
-    runs=20,
-    pool=500,
-    margin="z 21 and 13 (sd of the log .2) against 3; 11.1 (.19), 3.9 px (.16): 7 sd; sd "
-    "over films .86 px against .35: chi-square, 3e-5",
-    measure=_paired,
+    claim="the error follows model, noise and particles, beside the raw error of each film",
+    test="mean within 5 standard errors of a right experiment's at each of three settings, "
+    "scatter within a factor of 2.5",
+    runs=30,
+    pool=900,
+    settings=_models,
+    together=True,
+    false_fail=1e-3,
+    margin="5 standard errors, six means and their sum: 5e-5 by Student's law; scatter: an F "
+    "of 6.25 with 29 and 29 degrees of freedom",
 )
-def precision(model, rng, runs):
-    """Mean error of frames 50 to 250, a fresh film of the circling target in each run."""
-    films = target_log("circle", "high", seed=int(rng.integers(2**31)), runs=runs)
-    bel = start_of(model, films, (runs, 200), rng)
-    motion = model_of(model, SIGMA[model], 0.01 if model == "circle" else 0.05)
-    return track(films[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+def precision(model, sigma, M, rng, runs):
+    """Mean errors of filter and measurements, frames 50 to 150, a film per run: (2, runs)."""
+    films = lab.target_log("circle", "high", seed=int(rng.integers(2**31)), runs=runs)[:150]
+    bel = lab.start_of(model, films, (runs, M), rng)
+    motion = lab.model_of(model, sigma, 0.01 if model == "circle" else 0.05)
+    error = lab.track(films, bel, motion, pf.Position(20.0), rng).error
+    return np.array([e[50:].mean(axis=0) for e in (error, lab.measurement_error(films))])
 
 
-precision.holds(
-    "line beats fixed, paired",
-    lambda x: z_of_mean(x[:, 0] - x[:, 1], 0) > 3 or f"means {x.mean(0).round(1)} px",
-)
-precision.holds(
-    "circle beats line, paired",
-    lambda x: z_of_mean(x[:, 1] - x[:, 2], 0) > 3 or f"means {x.mean(0).round(1)} px",
-)
-precision.holds(
-    "a fresh film in each run: errors of fixed differ by an sd above .35 px",
-    lambda x: x[:, 0].std(ddof=1) > 0.35 or f"the sd is {x[:, 0].std(ddof=1):.2f} px",
-)
-precision.holds(
-    "fixed between 8 and 14 px, circle below 6 px",
-    lambda x: (8 < x[:, 0].mean() < 14 and x[:, 2].mean() < 6) or f"means {x.mean(0).round(1)} px",
-)
+precision.holds("both errors follow model, sigma and M", same_mean(5.0))
+precision.holds("both scatter as from film to film", same_scatter(2.5))
 
 
-@precision.wrong(
-    """runs every filter on the same film
-    Your errors of the fixed model hardly differ from run to run.
+def _films(rng, runs, noise="high"):
+    return lab.target_log("circle", noise, seed=int(rng.integers(2**31)), runs=runs)[:150]
+
+
+def _on(films, model, sigma, M, rng, runs, first=50, sensor=20.0):
+    bel = lab.start_of(model, films, (runs, M), rng)
+    motion = lab.model_of(model, sigma, 0.01 if model == "circle" else 0.05)
+    error = lab.track(films, bel, motion, pf.Position(sensor), rng).error
+    raw = measurement_error(films) * np.ones(runs)
+    return np.array([e[first:].mean(axis=0) for e in (error, raw)])
+
+
+@precision.wrong("""runs every filter on the same film
+    Is the error of your measurements the same in all runs?
     One film is one sample of noise, however often you run it.
-    Draw films with lab.target_log(..., runs=runs), one per run.""",
-    when=lambda x: x[:, 0].std(ddof=1) <= 0.35 and 8 < x[:, 0].mean() < 14,
-)
-def _one_film(m, rng, runs):
-    bel = start_of(m, CIRCLE, (runs, 200), rng)
-    motion = model_of(m, SIGMA[m], 0.01 if m == "circle" else 0.05)
-    return track(CIRCLE[:250], bel, motion, pf.Position(20.0), rng).error[50:].mean(axis=0)
+    Draw films with lab.target_log(..., runs=runs), one per run.""")
+def one_film(model, sigma, M, rng, runs):
+    return _on(CIRCLE[:150], model, sigma, M, rng, runs)
 
 
-@precision.wrong(
-    """uses the film with noise of 1 px
-    Your errors are below 2 px. Which film did you use?
+@precision.wrong("""uses films with noise of 1 px
+    Which films did you use?
     The question is about measurements with sd 20 px.
-    lab.target_log('circle', 'high', ...).""",
-    when=lambda x: x[:, 0].mean() < 8,
-)
-def low_noise(m, rng, runs):
-    films = target_log("circle", "low", seed=int(rng.integers(2**31)), runs=runs)
-    bel = start_of(m, films, (runs, 200), rng)
-    return track(films[:250], bel, model_of(m, 3.0), pf.Position(1.0), rng).error[50:].mean(axis=0)
+    lab.target_log('circle', 'high', ...).""")
+def low_noise(model, sigma, M, rng, runs):
+    return _on(_films(rng, runs, "low"), model, sigma, M, rng, runs)
 
 
-precision.wrong("""raw: is the error of the measurements, not of the filter
-    25 px is what the camera does without any filter.
-    Compare the weighted mean of the particles with the truth.
-    lab.track(...).error.""")(
-    lambda m, rng, runs: 25.0 + 0.3 * rng.standard_normal(runs), when=lambda x: x.mean() > 20
-)
+@precision.wrong("""follows the target with the circle, whatever model it is asked for
+    Does your function use the model?
+    The name says which motion model to use.
+    lab.model_of(model, sigma, ...).""")
+def always_circle(model, sigma, M, rng, runs):
+    return precision("circle", sigma, M, rng, runs)
+
+
+@precision.wrong("""has the process noise of Q12, whatever it is asked
+    Does your function use sigma?
+    The check chooses the process noise of the model.
+    lab.model_of(model, sigma, ...).""")
+def noise_of_q12(model, sigma, M, rng, runs):
+    return precision(model, {"fixed": 6.0, "line": 1.0, "circle": 0.5}[model], M, rng, runs)
+
+
+@precision.wrong("""has 200 particles, whatever it is asked
+    Does your function use M?
+    The check chooses the number of particles.
+    lab.start_of(model, films, (runs, M), rng).""")
+def always_200(model, sigma, M, rng, runs):
+    return precision(model, sigma, 200, rng, runs)
+
+
+@precision.wrong("""returns the rows in the other order
+    Which row is near 25 px for every model?
+    The error of the filter first, then that of the measurements.
+    np.array([filter, measurements]).""")
+def rows_swapped(model, sigma, M, rng, runs):
+    return precision(model, sigma, M, rng, runs)[::-1]
+
+
+TOLD = {"fixed": (11.3, 25.6), "line": (7.0, 25.6), "circle": (4.3, 25.6)}
+
+
+@precision.refuses("the errors of the text")
+def told(model, sigma, M, rng, runs):
+    return np.tile(np.array(TOLD[model])[:, None], runs)
+
+
+@precision.refuses("the errors of the text, with scatter")
+def told_with_scatter(model, sigma, M, rng, runs):
+    return told(model, sigma, M, rng, runs) + rng.standard_normal((2, runs))
+
+
+@precision.refuses("random in range")
+def guessed(model, sigma, M, rng, runs):
+    return rng.uniform([[3], [20]], [[20], [30]], (2, runs))
+
+
+@precision.refuses("the error of the measurements twice")
+def measured(model, sigma, M, rng, runs):
+    raw = measurement_error(_films(rng, runs))[50:].mean(axis=0)
+    return np.array([raw, raw])
+
+
+@precision.refuses("one film and one run, repeated")
+def repeated(model, sigma, M, rng, runs):
+    return np.repeat(precision(model, sigma, M, rng, 1), runs, axis=1)
+
+
+@precision.refuses("the last frame only")
+def last_frame(model, sigma, M, rng, runs):
+    return _on(_films(rng, runs), model, sigma, M, rng, runs, first=149)
+
+
+@precision.refuses("a sensor believed at 5 px")
+def sure_sensor(model, sigma, M, rng, runs):
+    return _on(_films(rng, runs), model, sigma, M, rng, runs, sensor=5.0)
+
+
+@precision.refuses("the fixed model for every model")
+def always_fixed(model, sigma, M, rng, runs):
+    return precision("fixed", sigma, M, rng, runs)
+
 
 q14b = Choice("""A report gives .5, 1.1 and 1.2 px for this experiment. Can that be?
     a* No: the order is that of another data set, and .5 px from a fixed model on a target at 2 px
