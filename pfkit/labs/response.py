@@ -77,8 +77,20 @@ def distance(x: Outcomes, slack: float = 0.0) -> NDArray[np.float64]:
     """Difference of the means of a pair of outcomes (runs, ..., 2), in its standard errors."""
     mean, wanted = np.moveaxis(x.mean(axis=0), -1, 0)
     off = np.sign(mean - wanted) * np.maximum(np.abs(mean - wanted) - slack, 0)
-    error = np.sqrt(x.var(axis=0, ddof=1).sum(axis=-1) / len(x)) + 1e-9 * (1 + np.abs(wanted))
-    return off / error
+    return off / _standard_error(x)
+
+
+def _standard_error(x: Outcomes) -> NDArray[np.float64]:
+    """Of the difference of the means, with a hair for outcomes that do not scatter."""
+    hair = 1e-9 * (1 + np.abs(x[..., 1].mean(axis=0)))
+    return np.sqrt(x.var(axis=0, ddof=1).sum(axis=-1) / len(x)) + hair
+
+
+def _in_all(x: Outcomes, z: NDArray[np.float64]) -> float:
+    """The differences of all settings and rows together; rows of one run may vary together."""
+    sums = (x / _standard_error(x)[..., None]).reshape(len(x), -1, 2).sum(axis=1)
+    variance = sums.var(axis=0, ddof=1).sum() / len(x)
+    return float(abs(z.sum()) / np.sqrt(max(variance, 1.0)))
 
 
 def _place(at: NDArray[np.float64]) -> tuple[tuple[int, ...], str]:
@@ -102,7 +114,7 @@ def same_mean(standard_errors: float = 4.5, slack: float = 0.0) -> Callable[[Out
 
     def holds(x: Outcomes) -> Any:
         z = distance(x, slack)
-        if max(np.abs(z).max(), abs(z.sum()) / np.sqrt(z.size)) <= standard_errors:
+        if max(np.abs(z).max(), _in_all(x, z)) <= standard_errors:
             return True
         index, place = _place(np.abs(z))
         mean, wanted = x.mean(axis=0)[index]

@@ -10,6 +10,7 @@ from pfkit.labs.response import (
     Counted,
     Watched,
     calls,
+    distance,
     each_setting,
     same_mean,
     same_scatter,
@@ -162,3 +163,13 @@ def test_calls_are_counted():
     watched.random()
     watched.random()
     assert watched.calls == {"random": 2}
+
+
+def test_rows_that_vary_together_count_once_in_all():
+    """Six rows that are one number: together they are as far off as one of them."""
+    rng = np.random.default_rng(3)
+    one = rng.standard_normal((40, 1, 1, 2))
+    six = np.repeat(np.repeat(one, 2, axis=1), 3, axis=2)
+    far = abs(float(distance(one).item()))
+    assert same_mean(far * 1.01)(six) is True
+    assert same_mean(far * 0.99)(six) is not True
