@@ -12,21 +12,22 @@ from pathlib import Path
 import numpy as np
 
 import pfkit as pf
-from pfkit.labs.lab4.modelled_noise import linear_weights
-from pfkit.labs.lab4.motion_models import CIRCLE, SIGMA, model_of, start_of
+from pfkit.labs.lab4.modelled_noise import linear_errors
+from pfkit.labs.lab4.motion_models import CIRCLE, model_of, start_of
 from pfkit.labs.target import AREA, anywhere, around, target_log, track
 
 SEEDS, M = 10, 1000
 FILM, FALSE = target_log("fixed", "low"), target_log("fixed", "outliers")
 HOME = FILM.start[:2]
 SWEEP = (1e-4, 1e-2, 1.0, 100.0, 1e4)
-TARGET = Path(__file__).parent.parent / "pfkit" / "labs" / "lab4" / "long_runs.json"
+SIGMA = {"fixed": 6.0, "line": 1.0, "circle": 0.5}  # px per frame, as in the text of Q12
+TARGET = Path(__file__).parent.parent / "pfkit" / "labs" / "long_runs.py"
 
 
 def sensor(variance: float, rng: np.random.Generator) -> dict[str, np.ndarray]:
     bel = anywhere((SEEDS, M), rng)
     found = track(FILM, bel, pf.FixedTarget(2**0.5), pf.Position(variance**0.5), rng)
-    linear = linear_weights(variance, rng, SEEDS, M, len(FILM))
+    linear = linear_errors(anywhere((SEEDS, M), rng), variance, rng, len(FILM))
     return {"mean error, px": found.error.mean(axis=0), "linear weights": linear.mean(axis=0)}
 
 
