@@ -173,7 +173,7 @@ gate.refuses("a root of the mean square")(
     A false measurement falls anywhere in the image: density 1/area.
     (1 - epsilon) * likelihood + epsilon / area.""",
     id="q13b",
-    fingerprint=lambda f: f(np.array([0.0, 1e-3, 0.05, 0.2]), 0.3, 40.0),
+    fingerprint=lambda f: f(np.array([0.0, 1e-3, 9e-3, 0.05, 0.2]), 0.3, 40.0),
 )
 def mixture(likelihood, epsilon, area):
     """Density of a measurement that is false with probability epsilon."""

@@ -173,7 +173,7 @@ Q12 = Question("Precision and number of particles")
 
 def _sizes(rng):
     """Each model with few particles, fixed and circle with many, too."""
-    M = rng.integers([10, 15, 12, 120, 60], [20, 25, 20, 200, 120])
+    M = rng.integers([8, 12, 8, 50, 30], [14, 18, 14, 80, 50])
     models = (*MODELS, "fixed", "circle")
     return [(m, int(n)) for m, n in zip(models, M, strict=True)]
 
@@ -188,7 +188,7 @@ def _sizes(rng):
     claim="the error follows the model and the number of particles",
     test="mean within 5 standard errors of a right experiment's at each of five settings, "
     "scatter within a factor of 8",
-    runs=24,
+    runs=64,
     pool=900,
     settings=_sizes,
     together=True,
