@@ -12,8 +12,9 @@ from pathlib import Path
 import numpy as np
 
 import pfkit as pf
+from pfkit.labs.lab4.given import circle as CIRCLE
+from pfkit.labs.lab4.given import model_of, start_of
 from pfkit.labs.lab4.modelled_noise import linear_errors
-from pfkit.labs.lab4.motion_models import CIRCLE, model_of, start_of
 from pfkit.labs.target import AREA, anywhere, around, target_log, track
 
 SEEDS, M = 10, 1000

@@ -9,18 +9,26 @@ from importlib.resources import files
 
 from pfkit.labs.lab import Lab
 from pfkit.labs.lab4 import detection, gates, modelled_noise, motion_models, precision, undetected
-from pfkit.labs.lab4.detection import auc
-from pfkit.labs.lab4.motion_models import model_of, start_of
-from pfkit.labs.lab4.precision import measurement_error
-from pfkit.labs.long_runs import LONG_RUNS
-from pfkit.labs.target import AREA, anywhere, around, target_log, track
+from pfkit.labs.lab4.given import (
+    AREA,
+    anywhere,
+    around,
+    auc,
+    circle,
+    film,
+    half_false,
+    measurement_error,
+    model_of,
+    start_of,
+    target_log,
+    track,
+)  # fmt: skip
 
 LAB = Lab.of(
     __name__, "Lab 4: tuning and outliers",
     modelled_noise, motion_models, detection, precision, gates, undetected,
 )  # fmt: skip
 __getattr__ = LAB.verb
-film, circle, half_false = modelled_noise.FILM, motion_models.CIRCLE, detection.FALSE
 
 
 def long_run(question: str) -> None:

@@ -6,25 +6,13 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Prediction, Question, experiment
-from pfkit.labs import lab4 as lab
+from pfkit.labs.lab4 import given as lab
 from pfkit.labs.response import same_mean, same_scatter
-from pfkit.labs.target import around, target_log
+from pfkit.labs.target import target_log
 
 Q11 = Question("Motion model and process noise")
 
 CIRCLE = target_log("circle", "high")
-
-
-def model_of(name, sigma, sigma_theta=0.05):
-    """One of the three motion models by name."""
-    if name == "fixed":
-        return pf.FixedTarget(sigma)
-    return {"line": pf.LineTarget, "circle": pf.CircleTarget}[name](sigma, sigma_theta)
-
-
-def start_of(name, log, shape, rng):
-    """Particles around the true start (sd 20 px), with a heading if the model has one."""
-    return around(log.start[: 2 if name == "fixed" else 3], shape, rng, sigma=20.0)
 
 
 MODELS = ("fixed", "line", "circle")
@@ -126,8 +114,8 @@ def of_one_pixel(model, ratio, M, rng, runs):
 
 
 def _follow(model, ratio, M, rng, runs, film=CIRCLE, sensor=20.0):
-    bel = start_of(model, film, (runs, M), rng)
-    motion = model_of(model, np.sqrt(400 * ratio))
+    bel = lab.start_of(model, film, (runs, M), rng)
+    motion = lab.model_of(model, np.sqrt(400 * ratio))
     return lab.track(film[:120], bel, motion, pf.Position(sensor), rng).error[50:].mean(axis=0)
 
 
@@ -217,8 +205,8 @@ def number_unused(model, M, rng, runs):
 
 
 def _with_noise(model, M, rng, runs, sigma, sigma_theta):
-    bel = start_of(model, CIRCLE, (runs, M), rng)
-    motion = model_of(model, sigma, sigma_theta)
+    bel = lab.start_of(model, CIRCLE, (runs, M), rng)
+    motion = lab.model_of(model, sigma, sigma_theta)
     run = lab.track(CIRCLE[:150], bel, motion, pf.Position(20.0), rng)
     return run.error[50:].mean(axis=0)
 

@@ -6,27 +6,11 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Question, experiment
-from pfkit.labs import lab4 as lab
+from pfkit.labs.lab4 import given as lab
 from pfkit.labs.lab4.motion_models import CIRCLE, MODELS
 from pfkit.labs.response import same_mean, same_scatter
 
 Q14 = Question("Best precision under noise of 20 px")
-
-
-def measurement_error(films: pf.Log) -> np.ndarray:
-    """Distance of each measurement from the truth.
-
-    Parameters
-    ----------
-    films : Log of one film or of several, from `target_log`
-
-    Returns
-    -------
-    array (frames, films), px
-    """
-    assert films.truth is not None
-    off = np.stack(films.z).reshape(len(films), 2, -1) - films.truth[:2].T[..., None]
-    return np.hypot(off[:, 0], off[:, 1])
 
 
 def _models(rng):
@@ -74,7 +58,7 @@ def _on(films, model, sigma, M, rng, runs, first=50, sensor=20.0):
     bel = lab.start_of(model, films, (runs, M), rng)
     motion = lab.model_of(model, sigma, 0.01 if model == "circle" else 0.05)
     error = lab.track(films, bel, motion, pf.Position(sensor), rng).error
-    raw = measurement_error(films) * np.ones(runs)
+    raw = lab.measurement_error(films) * np.ones(runs)
     return np.array([e[first:].mean(axis=0) for e in (error, raw)])
 
 
@@ -146,7 +130,7 @@ def guessed(model, sigma, M, rng, runs):
 
 @precision.refuses("the error of the measurements twice")
 def measured(model, sigma, M, rng, runs):
-    raw = measurement_error(_films(rng, runs))[50:].mean(axis=0)
+    raw = lab.measurement_error(_films(rng, runs))[50:].mean(axis=0)
     return np.array([raw, raw])
 
 

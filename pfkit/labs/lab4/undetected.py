@@ -6,7 +6,7 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.labs import Choice, Question, experiment
-from pfkit.labs import lab4 as lab
+from pfkit.labs.lab4 import given as lab
 from pfkit.labs.response import same_mean, same_scatter
 
 Q16 = Question("Outliers that nobody detects")
