@@ -451,7 +451,7 @@ sir.refuses("an offset that is not uniform")(
         )
     )
 )
-sir.refuses("the roulette wheel")(_sir_by(lambda w, rng: pf.roulette_wheel(w, rng)))
+sir.refuses("the resampling wheel")(_sir_by(lambda w, rng: pf.resampling_wheel(w, rng)))
 sir.refuses("the residual scheme")(_sir_by(lambda w, rng: pf.residual(w, rng)))
 sir.refuses("the set as it was, with equal weights")(
     lambda s, lw, rng: (s, np.full(lw.size, -np.log(lw.size)))

@@ -255,7 +255,7 @@ comb.refuses("NumPy's global generator", named="global-luck")(
 comb.refuses("an offset that is not uniform")(
     lambda w, rng: np.searchsorted(copying.edges(w), (np.arange(w.size) + rng.beta(2, 2)) / w.size)
 )
-comb.refuses("the roulette wheel")(lambda w, rng: pf.roulette_wheel(w, rng))
+comb.refuses("the resampling wheel")(lambda w, rng: pf.resampling_wheel(w, rng))
 comb.refuses("the residual scheme")(lambda w, rng: pf.residual(w, rng))
 comb.refuses("the last particle takes what is left, though its weight is zero")(
     lambda w, rng: np.searchsorted(np.cumsum(w)[:-1], copying.teeth(w.size, rng))

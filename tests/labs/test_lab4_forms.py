@@ -30,7 +30,7 @@ def steps_by_hand(model, M, rng, runs):
         bel, _ = pf.update(pf.predict(bel, u, motion, own), z, sensor)
         mean = (bel.w * bel.state[:2]).sum(axis=-1)
         errors.append(np.hypot(*(mean - lab.circle.truth[:2, k, None])))
-        bel = pf.select(bel, pf.systematic(bel.w, own))
+        bel = pf.take(bel, pf.systematic(bel.w, own))
     return tuple(np.mean(errors[50:], axis=0))
 
 

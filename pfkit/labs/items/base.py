@@ -255,8 +255,10 @@ def tested(prop: Property, evidence: Any) -> Line:
     """Evaluate one property; an exception is a failure that says what was raised."""
     try:
         found = prop.holds(evidence)
+        return (
+            Line(prop.says, False, found)
+            if isinstance(found, str)
+            else Line(prop.says, bool(found))
+        )
     except (Exception, SystemExit) as error:
         return Line(prop.says, False, describe(error))
-    if isinstance(found, str):
-        return Line(prop.says, False, found)
-    return Line(prop.says, bool(found))

@@ -11,6 +11,9 @@ from pfkit.labs.items.base import Item, Judgement, Misconception
 from pfkit.labs.verdict import Line
 
 
+MOST_DRAWS = 100  # of numbers for a world of one's own
+
+
 class NotNumbers(ValueError):
     """What the student gave instead of the numbers, and what to write: two sentences."""
 
@@ -89,8 +92,15 @@ class Numeric(Item):
         return take
 
     def _enter_another(self, rng: np.random.Generator) -> None:
-        if self.draw is not None:
+        """Draw numbers until no wrong value is right, or another wrong one, by coincidence."""
+        for _ in range(MOST_DRAWS if self.draw is not None else 0):
             self._enter(self.draw(rng))
+            if self._tells_apart():
+                return
+
+    def _tells_apart(self) -> bool:
+        judged = ((m, self.judge(m.example)) for m in self.misconceptions)
+        return all(j.fraction < 1 and j.misconception is m for m, j in judged)
 
     def _enter(self, world: dict[str, Any] | None) -> None:
         """Fill the numbers of a world into all that was declared."""
