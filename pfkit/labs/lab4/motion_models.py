@@ -176,7 +176,7 @@ def _sizes(rng):
     claim="the error follows the model and the number of particles",
     test="mean within 5 standard errors of a right experiment's at each of five settings, "
     "scatter within a factor of 8",
-    runs=64,
+    runs=40,
     pool=900,
     settings=_sizes,
     together=True,
