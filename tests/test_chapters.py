@@ -56,9 +56,10 @@ def text(cell):
 
 
 def is_lab_cell(cell):
-    """Answer and check cells are the student's; a removed cell is for Jupyter alone."""
+    """Answer, check and solution cells are the student's; a removed cell is for Jupyter alone."""
     removed = "remove-cell" in cell["metadata"].get("tags", [])
-    return removed or "answer" in cell["metadata"] or bool(LAB_CALL.search(text(cell)))
+    shown = text(cell).startswith(("lab.solution(", "lab.ask(", "lab.student("))
+    return removed or shown or "answer" in cell["metadata"] or bool(LAB_CALL.search(text(cell)))
 
 
 def has_figure(cell):

@@ -473,7 +473,7 @@ clock_x.refuses("right mean, law of its own", named="own-scheme")(
 clock_x.refuses("random in range", named="own-scheme")(
     lambda scheme, N, rng: int(rng.integers(1, 300))
 )
-clock_x.refuses("the chain of chapter 9, which knows one scheme", named="own-scheme")(
+clock_x.refuses("the chain of the chapter, which knows one scheme", named="own-scheme")(
     lambda scheme, N, rng: clock_x(pf.multinomial, N, rng)
 )
 
