@@ -21,6 +21,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Iterable
+from concurrent.futures import ThreadPoolExecutor
 from typing import Any
 
 from environment import ROOT, say
@@ -36,6 +37,11 @@ COPIES = {"one-call"}  # wrong answers whose runs are copies of each other
 PARTS = 10  # that the weeks take turns with
 # Labs whose chapters are still to be rebuilt: their items need not have such lists yet.
 PENDING = ("motion", "sensing", "outliers", "real_robot")
+# Labs whose rates are still to be measured: the replays of their long films take an hour.
+UNMEASURED = ("lab3", "lab4")
+# Answers that are refused, or named, in fewer replays than we ask: (lab, item, what it says).
+# The page shows them, and the tests that each is still short.
+SHORT: frozenset[tuple[str, str, str]] = frozenset()
 
 
 def rates_of(item: Any) -> dict[str, Any]:
@@ -120,16 +126,17 @@ def in_a_process(lab: str, items: Iterable[str] = ()) -> subprocess.Popen:
 
 def two_at_a_time(jobs: list[tuple[str, list[str]]]) -> dict[str, dict[str, Any]]:
     """Run jobs (lab, items) on two cores; raises RuntimeError if one fails."""
-    found, waiting, running = {}, list(jobs), list[tuple[str, subprocess.Popen]]()
-    while waiting or running:
-        while waiting and len(running) < 2:
-            lab, items = waiting.pop(0)
-            running.append((lab, in_a_process(lab, items)))
-        lab, process = running.pop(0)
+
+    def one(job: tuple[str, list[str]]) -> tuple[str, dict[str, Any]]:
+        lab, items = job
+        process = in_a_process(lab, items)
         text, _ = process.communicate()
         if process.returncode:
             raise RuntimeError(f"replaying {lab} failed; its reason is above")
-        found[lab] = json.loads(text.splitlines()[-1])
+        return lab, json.loads(text.splitlines()[-1])
+
+    with ThreadPoolExecutor(2) as pool:
+        found = dict(pool.map(one, jobs))
     return found
 
 
@@ -144,7 +151,7 @@ def problems(lab: str, items: dict[str, Any]) -> list[str]:
             )
         for kind in ("refused", "named"):
             for says, share in rates[kind].items():
-                if share < LEAST:
+                if share < LEAST and (lab, name, says) not in SHORT:
                     found.append(f"{where}: {kind} in only {100 * share:.0f} %: {says}")
         wrong = len(rates["refused"]) + (len(rates["named"]) if rates["letter"] == "C" else 0)
         least = LAZY[rates["letter"]]
@@ -178,11 +185,22 @@ def _least(shares: Iterable[float]) -> str:
     return f"{len(all_of)}, at least {100 * min(all_of):.0f} %" if all_of else "not known yet"
 
 
+def shortfalls(table: dict[str, Any]) -> str:
+    """A list of what is refused or named less often than we ask."""
+    rows = []
+    for lab, name, says in sorted(SHORT):
+        rates = table[lab]["items"][name]
+        kind = "named" if says in rates["named"] else "refused"
+        rows.append(f"* {lab} `{name}`, {kind} in {100 * rates[kind][says]:.0f} %: {says}")
+    return "\n".join(["", "Known to fall short:", "", *rows, ""]) + "\n" if rows else "\n"
+
+
 def fill_page(table: dict[str, Any]) -> str:
     """The page's text with the table of now."""
     text = PAGE.read_text(encoding="utf-8")
     head, _, rest = text.partition(START)
-    return f"{head}{START}\n{page_table(table)}\n{END}{rest.partition(END)[2]}"
+    missing = f"Not measured yet: {', '.join(UNMEASURED)}.\n" if UNMEASURED else ""
+    return f"{head}{START}\n{page_table(table)}\n{shortfalls(table)}{missing}{END}{rest.partition(END)[2]}"
 
 
 def write(table: dict[str, Any]) -> None:
@@ -261,7 +279,7 @@ def main() -> int:
         return 0
     from pfkit.labs import catalogue
 
-    names = list(catalogue.names())
+    names = [name for name in catalogue.names() if name not in UNMEASURED]
     if options.check:
         return check(names)
     return renew(names if options.all else stale_labs(read_table(), names))
