@@ -10,7 +10,6 @@ from pfkit.labs.items import units
 from pfkit.labs.items.base import Item, Judgement, Misconception
 from pfkit.labs.verdict import Line
 
-
 MOST_DRAWS = 100  # of numbers for a world of one's own
 
 
