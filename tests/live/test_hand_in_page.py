@@ -74,6 +74,15 @@ def scrolled(page) -> float:
     return page.tab.evaluate("document.scrollingElement.scrollTop")
 
 
+def follows(page, top: float, by: float) -> None:
+    """Wait until the page has scrolled by a finger's way; Chromium keeps up to 60 px of it."""
+    page.tab.wait_for_function(
+        "([top, by]) => Math.abs(document.scrollingElement.scrollTop - top - by)"
+        " <= 60 + 0.1 * Math.abs(by)",
+        arg=[top, by],
+    )
+
+
 def free_place(page) -> tuple[float, float]:
     """A place in the picture, 60 pixels from all that can be held."""
     return tuple(
@@ -124,8 +133,7 @@ def test_a_swipe_scrolls_and_loads_nothing(phone, selector, up):
     asked, before = len(phone.requests), phone.tab.evaluate(f"({STATE})({phone.x})")
     top = scrolled(phone)
     phone.thumb.drag(at, (0, -150 if up else 150))
-    moved = (scrolled(phone) - top) * (1 if up else -1)
-    assert moved == pytest.approx(150, abs=25) if selector == ".pf-canvas" else 60 < moved < 180
+    follows(phone, top, 150 if up else -150)
     assert phone.tab.evaluate(f"({STATE})({phone.x})") == before
     assert len(phone.requests) == asked
 
@@ -150,7 +158,7 @@ def test_a_swipe_over_a_live_picture_changes_nothing(live_phone, hand):
         before = page.tab.evaluate(f"[{page.x}.ticks, {page.x}.history, {page.x}.report]")
         top = scrolled(page)
         page.thumb.drag(free_place(page), by)
-        assert scrolled(page) - top == pytest.approx(-by[1], abs=25)
+        follows(page, top, -by[1])
         settle(page)
         assert page.tab.evaluate(f"[{page.x}.ticks, {page.x}.history, {page.x}.report]") == before
 
