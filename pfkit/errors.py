@@ -66,11 +66,9 @@ def as_numbers(name: str, value: Any, error: type[PfkitError] = ParameterError) 
 def require_finite(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
     """Return `value` as a float array; raise `error` if it is not numeric and finite."""
     array = as_numbers(name, value, error)
-    if math.isfinite(np.vdot(array, array)):  # the fast way; squares of sound numbers may overflow
-        return array
-    bad = array[~np.isfinite(array)]
-    if bad.size:
-        bad = bad.flat[0]
+    finite = np.isfinite(array)
+    if not finite.all():
+        bad = array[~finite].flat[0]
         raise error(f"{name} must be finite, got {bad}; remove or repair that value")
     return array
 

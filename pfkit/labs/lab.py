@@ -131,7 +131,9 @@ class Lab:
     # -- a world of one's own ----------------------------------------------------------------
 
     def student(self, who: str, term: str = "") -> str:
-        """Ask this student's own numbers, data and order of options from now on.
+        """Ask this student's own numbers and data from now on.
+
+        Said again of the same student it changes nothing, so that what was locked stays locked.
 
         Parameters
         ----------
@@ -141,18 +143,23 @@ class Lab:
         term : str
             Such as ``"2027-spring"``: makes the questions of another term differ.
         """
-        self.forget()
-        self.who, self.term = str(who).strip(), str(term).strip()
+        who, term = str(who).strip(), str(term).strip()
+        if (who, term) != (self.who, self.term):
+            self._enter(who, term)
         if not self.who:
             return f"{self.title}: the questions as printed."
-        for name, item in self.items.items():
+        return f'{self.title}: the questions of {self.who}. lab.ask("...") shows one.'
+
+    def _enter(self, who: str, term: str) -> None:
+        self.forget()
+        self.who, self.term = who, term
+        for name, item in self.items.items() if who else ():
             text = "/".join((self.term, self.who.casefold(), self.name, name))
             seed = int.from_bytes(hashlib.sha256(text.encode()).digest()[:8], "big")
             self.items[name] = item.personal(np.random.default_rng(seed))
-        return f'{self.title}: the questions of {self.who}. lab.ask("...") shows one.'
 
     def ask(self, item_id: str) -> None:
-        """Print a question with the numbers and options of the student's own world."""
+        """Print a question with the numbers of the student's own world."""
         item = self.items.get(item_id) if isinstance(item_id, str) else None
         print(f"{item_id}: {item.asked()}" if item else self._unknown(item_id))
 
@@ -268,14 +275,21 @@ class Lab:
         verdict = Verdict(
             item.id,
             status,
-            0.0 if by_hand else item.points * judged.fraction,
+            0.0 if by_hand else item.points * item.earned(judged),
             item.points,
-            "kept for marking by hand" if status == "recorded" else "",
+            "kept for marking by hand"
+            if status == "recorded"
+            else self._own_question(item, status),
             judged.lines,
             self._hint(item, judged, status),
             judged.misconception.name if judged.misconception else "",
         )
         return self._keep(verdict)
+
+    def _own_question(self, item: Item, status: str) -> str:
+        """The question with the student's numbers, which differ from those in print."""
+        personal = item.origin is not None and item.title != item.origin.title
+        return f"your question: {item.title}" if personal and status not in FINE else ""
 
     def _keep(self, verdict: Verdict) -> Verdict:
         self.verdicts[verdict.item] = verdict
@@ -330,17 +344,12 @@ class Lab:
                 "score": v.score,
                 "max": item.points,
                 "misconception": v.misconception,
-                "choice": self._printed_choice(item),
+                "choice": self.predictions.get(item.id, {}).get("choice", ""),
                 "detail": "; ".join(x.says for x in v.lines if not x.ok),
                 "ticks": self.ticks.get(item.id, []),
                 "version": item.version,
             }
         return found
-
-    def _printed_choice(self, item: Item) -> str:
-        """The letter in print of a locked prediction: personal orders of options differ."""
-        letter = self.predictions.get(item.id, {}).get("choice", "")
-        return item.printed(letter) if isinstance(item, Prediction) else ""
 
     def guesses(self) -> list[tuple[str, float | None, bool]]:
         """Predictions whose experiment was checked: (item, sure, right?)."""

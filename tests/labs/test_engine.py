@@ -31,8 +31,9 @@ from pfkit.labs import (
     replay,
     resampling,
 )
-from pfkit.labs.items import is_unanswered
+from pfkit.labs.items import Judgement, is_unanswered
 from pfkit.labs.items.base import written_lines
+from pfkit.labs.verdict import Line
 
 ASKED = """
     first
@@ -544,3 +545,11 @@ def test_controls_are_offered_only_where_a_person_runs_the_cell(lab, monkeypatch
     monkeypatch.setenv("PFKIT_WIDGETS", "off")
     lab.check("m", ...)
     assert len(shown) == 2
+
+
+def test_an_experiment_earns_all_or_nothing(lab):
+    """One of two properties holds of many a constant."""
+    item = lab.items["x"]
+    judged = Judgement((Line("one", True), Line("two", False)))
+    assert judged.fraction == 0.5
+    assert item.earned(judged) == 0 and lab.items["c"].earned(judged) == 0.5

@@ -155,6 +155,10 @@ class Item:
         """A right answer, which also lets an unanswered notebook carry on."""
         raise NotImplementedError
 
+    def earned(self, judged: Judgement) -> float:
+        """Share of the points."""
+        return judged.fraction
+
     def worked(self) -> str:
         """The solution as a student would write it."""
         return f"{self.id} = {self.solution()!r}"
@@ -164,7 +168,7 @@ class Item:
         return self.title
 
     def personal(self, rng: np.random.Generator) -> "Item":
-        """The same question in another world: other numbers, data or order of options."""
+        """The same question in another world: other numbers or data."""
         new = copy.copy(self)
         new.origin = self
         new._enter_another(rng)

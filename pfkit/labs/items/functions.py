@@ -237,6 +237,10 @@ class Experiment(Function):
     seed: int = 2024
     _kept: dict[tuple, np.ndarray] = field(init=False, default_factory=dict, repr=False)
 
+    def earned(self, judged: Judgement) -> float:
+        """All or nothing: a constant may have one of several properties."""
+        return float(judged.fraction == 1)
+
     def _enter_another(self, rng: np.random.Generator) -> None:
         self.seed = int(rng.integers(2**31))  # other random numbers, and so other settings
 

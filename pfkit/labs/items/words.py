@@ -4,8 +4,6 @@ import re
 from dataclasses import KW_ONLY, dataclass, field
 from typing import Any, ClassVar
 
-import numpy as np
-
 from pfkit.labs.items.base import Item, Judgement, Ladder
 from pfkit.labs.verdict import Line
 
@@ -29,7 +27,6 @@ class Options(Item):
     options: dict[str, str] = field(init=False, default_factory=dict)
     feedback: dict[str, str] = field(init=False, default_factory=dict)
     key: str = field(init=False, default="")
-    public: dict[str, str] = field(init=False, default_factory=dict)
 
     def read(self, lines: Ladder) -> None:
         for line in lines:
@@ -50,19 +47,6 @@ class Options(Item):
 
     def asked(self) -> str:
         return "\n".join([self.title, *(f"  ({k}) {text}" for k, text in self.options.items())])
-
-    def _enter_another(self, rng: np.random.Generator) -> None:
-        """The options in another order; ``public`` tells the letters that they have in print."""
-        letters, options, feedback = list(self.options), self.options, self.feedback
-        order = [letters[i] for i in rng.permutation(len(letters))]
-        self.public = dict(zip(letters, order, strict=True))
-        self.options = {mine: options[theirs] for mine, theirs in self.public.items()}
-        self.feedback = {m: feedback[t] for m, t in self.public.items() if t in feedback}
-        self.key = next(mine for mine, theirs in self.public.items() if theirs == self.key)
-
-    def printed(self, letter: str) -> str:
-        """The letter that an option has in print, for tables over a class."""
-        return self.public.get(letter, letter)
 
 
 @dataclass(eq=False)
