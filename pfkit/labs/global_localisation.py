@@ -596,7 +596,9 @@ luck_x.wrong("""told: is right without names, too: somebody told the filter wher
     Look for names of landmarks, or a known start.
     Weigh with the sensor, and start from the belief, that were given.""")(
     lambda sensor, bel, rng: luck_x(pf.RangeBearing(pf.worlds.square(), 0.3, 0.1), bel, rng),
-    when=lambda x: bool(_own(x, 0) > 0.6 and _own(x, 1) > 0.87 and (x[:, 0, 0] != 0).any()),
+    when=lambda x: bool(
+        _own(x, 0) > 0.6 and _own(x, 1) > 0.87 and (x[..., 0] != x[:1, :, 0]).any()
+    ),  # a constant, or one run told of all, is no filter
 )
 luck_x.wrong("""no-names: gives no more with names than without: it does not use the sensor given
     With names there is one right answer. Who read them?
