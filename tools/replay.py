@@ -168,7 +168,7 @@ def page_table(table: dict[str, Any]) -> str:
         "|---|---|---|---|---|---|",
     ]
     for lab in sorted(table):
-        for name, rates in table[lab]["items"].items():
+        for name, rates in sorted(table[lab]["items"].items()):
             fails, of = rates["right"]
             refused, named = rates["refused"].values(), rates["named"].values()
             right = f"{fails} of {of:,}" if rates["letter"] == "X" else "none: same every time"
