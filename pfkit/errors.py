@@ -136,6 +136,17 @@ def require_shape(name: str, value: Shape) -> tuple[int, ...]:
     return tuple(require_count(name, n) for n in shape)
 
 
+def components_first(name: str, value: Any, n: int) -> np.ndarray:
+    """Return `value` as a float array; raise `ShapeError` unless its first axis has length `n`."""
+    array = as_numbers(name, value, ShapeError)
+    if array.ndim == 0 or array.shape[0] != n:
+        hint = "; transpose it" if array.ndim == 2 and array.shape[1] == n else ""
+        raise ShapeError(
+            f"{name} must have its {n} components first, shape ({n}, ...), got {array.shape}{hint}"
+        )
+    return array
+
+
 def require_components(
     name: str, value: Any, n: int, error: type[PfkitError] = ParameterError
 ) -> np.ndarray:
@@ -143,13 +154,7 @@ def require_components(
 
     Raises `ShapeError` if it does not have that shape, and `error` if it is not finite.
     """
-    array = as_numbers(name, value, ShapeError)
-    if array.ndim == 0 or array.shape[0] != n:
-        hint = "; transpose it" if array.ndim == 2 and array.shape[1] == n else ""
-        raise ShapeError(
-            f"{name} must have its {n} components first, shape ({n}, ...), got {array.shape}{hint}"
-        )
-    return require_finite(name, array, error)
+    return require_finite(name, components_first(name, value, n), error)
 
 
 def require_plane(state: Any) -> np.ndarray:

@@ -11,6 +11,9 @@ has an inverse. That group is called SE(2). Odometry between two instants is the
 right answer along: ``compose(g, pose)``. The tests lean on that equivariance.
 
 All functions take components first: a pose is ``(3, ...)`` and the rest broadcasts.
+
+A log's truth is NaN where nobody filmed. `wrap` and `between`, with which a truth is compared,
+hand that on; `compose` and `inverse`, which move robots, refuse it.
 """
 
 from __future__ import annotations
@@ -18,7 +21,14 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_components, require_finite
+from pfkit.errors import (
+    ParameterError,
+    ShapeError,
+    as_numbers,
+    components_first,
+    require_components,
+    require_finite,
+)
 
 TWO_PI = 2.0 * np.pi
 
@@ -34,19 +44,26 @@ def wrap(angle: ArrayLike) -> NDArray[np.float64]:
 
     Returns
     -------
-    array of the same shape, radians in (-pi, pi] but for rounding
+    array of the same shape, radians in (-pi, pi] but for rounding; NaN stays NaN
 
     Raises
     ------
     ParameterError
-        If an angle is not a finite number.
+        If an angle is not a number, or infinite.
 
     Examples
     --------
     >>> wrap([0.0, np.pi, -np.pi, 2 * np.pi]).round(6)
     array([0.      , 3.141593, 3.141593, 0.      ])
     """
-    return _wrap(require_finite("angle", angle))
+    return _wrap(_known_or_nan("angle", as_numbers("angle", angle)))
+
+
+def _known_or_nan(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Let NaN, "nobody knows", pass; refuse infinity, which nobody means."""
+    if np.isinf(values).any():
+        raise ParameterError(f"{name} must not be infinite, got inf; remove or repair that value")
+    return values
 
 
 def _wrap(angle: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -79,10 +96,14 @@ def compose(pose: ArrayLike, motion: ArrayLike) -> NDArray[np.float64]:
     >>> compose([1.0, 2.0, np.pi / 2], [3.0, 0.0, 0.0]).round(6)  # three metres ahead
     array([1.      , 5.      , 1.570796])
     """
-    x, y, theta = require_components("pose", pose, 3)
-    dx, dy, dtheta = require_components("motion", motion, 3)
+    return _compose(require_components("pose", pose, 3), require_components("motion", motion, 3))
+
+
+def _compose(pose: NDArray[np.float64], motion: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`compose` without the checks."""
+    (x, y, theta), (dx, dy, dtheta) = pose, motion
     c, s = np.cos(theta), np.sin(theta)
-    return np.stack((x + c * dx - s * dy, y + s * dx + c * dy, wrap(theta + dtheta)))
+    return np.stack((x + c * dx - s * dy, y + s * dx + c * dy, _wrap(theta + dtheta)))
 
 
 def inverse(pose: ArrayLike) -> NDArray[np.float64]:
@@ -101,9 +122,14 @@ def inverse(pose: ArrayLike) -> NDArray[np.float64]:
     ShapeError, ParameterError
         If the first axis does not have length 3, or a value is not finite.
     """
-    x, y, theta = require_components("pose", pose, 3)
+    return _inverse(require_components("pose", pose, 3))
+
+
+def _inverse(pose: NDArray[np.float64]) -> NDArray[np.float64]:
+    """`inverse` without the checks."""
+    x, y, theta = pose
     c, s = np.cos(theta), np.sin(theta)
-    return np.stack((-c * x - s * y, s * x - c * y, wrap(-theta)))
+    return np.stack((-c * x - s * y, s * x - c * y, _wrap(-theta)))
 
 
 def between(pose0: ArrayLike, pose1: ArrayLike) -> NDArray[np.float64]:
@@ -117,14 +143,18 @@ def between(pose0: ArrayLike, pose1: ArrayLike) -> NDArray[np.float64]:
 
     Returns
     -------
-    array (3, ...)
+    array (3, ...); NaN where a pose is NaN
 
     Raises
     ------
     ShapeError, ParameterError
-        If the first axis of either argument does not have length 3, or a value is not finite.
+        If the first axis of either argument does not have length 3, or a value is infinite.
     """
-    return compose(inverse(pose0), pose1)
+    first, second = (
+        _known_or_nan(name, components_first(name, pose, 3))
+        for name, pose in (("pose0", pose0), ("pose1", pose1))
+    )
+    return _compose(_inverse(first), second)
 
 
 def circular_mean(theta: ArrayLike, w: ArrayLike | None = None) -> NDArray[np.float64]:

@@ -113,6 +113,13 @@ EDGE: dict[str, tuple[str, ...]] = {
     "__main__": ("matplotlib",),
 }
 
+# Module -> what it imports inside a function, where it is there: extras that read files of others.
+OPTIONAL: dict[str, tuple[str, ...]] = {
+    "worlds.map_files": ("PIL",),
+    "logs.datasets": ("rosbags", "yaml"),
+    "labs": ("ipywidgets", "IPython"),
+}
+
 # Name -> module that it is imported from.
 HOME = {
     name: f"pfkit.{module}"

@@ -30,6 +30,7 @@ NOT_MODELS = [(None, "None"), (3, "3")]
 # Every kind of argument with what it must not be: (value, a piece of the message).
 BAD: dict[str, list[tuple[Any, str]]] = {
     "angle": NUMBERS,
+    "angle or unknown": [NUMBERS[0], NUMBERS[2], NUMBERS[4]],
     "numbers": NUMBERS,
     "number": [*NUMBERS[:3]],
     "pose": [
@@ -41,6 +42,10 @@ BAD: dict[str, list[tuple[Any, str]]] = {
         ([0.0, NAN, 0.0], "nan"),
         ([0.0, INF, 0.0], "inf"),
         ([1, 2, 1j], "1j"),
+    ],
+    "pose or unknown": [
+        *[("here", "here"), (np.zeros((5, 3)), "(5, 3)"), (np.zeros(2), "(2,)"), (0.0, "()")],
+        *[([0.0, INF, 0.0], "inf"), ([1, 2, 1j], "1j")],
     ],
     "control": [("go", "go"), (np.zeros(5), "(5,)"), ([NAN, 0.1, 0.1], "nan"), (1.0, "()")],
     "positive": [
@@ -169,10 +174,13 @@ half, one = (0.5, "fraction"), (1.0, "positive")
 scheme = dict(w=w, rng=r, n=n)
 
 TABLE: dict[str, Row] = {
-    "wrap": (pf.wrap, dict(angle=(1.0, "angle"))),
+    "wrap": (pf.wrap, dict(angle=(1.0, "angle or unknown"))),
     "compose": (pf.compose, dict(pose=pose, motion=pose)),
     "inverse": (pf.inverse, dict(pose=pose)),
-    "between": (pf.between, dict(pose0=pose, pose1=pose)),
+    "between": (
+        pf.between,
+        dict(pose0=(POSE, "pose or unknown"), pose1=(POSE, "pose or unknown")),
+    ),
     "circular_mean": (
         pf.circular_mean,
         dict(theta=([1.0, 2.0], "scores"), w=([1.0, 1.0], "numbers")),

@@ -96,3 +96,17 @@ def test_the_circular_mean_crosses_the_cut():
 def test_weights_must_belong_to_the_angles():
     with pytest.raises(pf.ShapeError, match=r"shape of theta, \(3,\), got \(2,\)"):
         pf.circular_mean(np.zeros(3), np.ones(2))
+
+
+def test_what_nobody_knows_stays_unknown_and_spoils_nothing_else():
+    truth = np.array([[0.0, np.nan, 3.0], [1.0, np.nan, 1.0], [7.0, np.nan, np.nan]])
+    np.testing.assert_array_equal(np.isnan(pf.wrap(truth[2])), [False, True, True])
+    moved = pf.between(truth[:, :1], truth)
+    assert np.isnan(moved[:, 1]).all() and np.isnan(moved[2, 2])
+    np.testing.assert_allclose(moved[:, 0], 0.0, atol=1e-12)
+    np.testing.assert_allclose(np.hypot(*moved[:2, 2]), 3.0)
+    for refused in (pf.compose, pf.between):
+        with pytest.raises(pf.PfkitError, match="inf"):
+            refused(truth[:, 0], [np.inf, 0, 0])
+    with pytest.raises(pf.ParameterError, match="nan"):
+        pf.compose(truth[:, 1], truth[:, 0])

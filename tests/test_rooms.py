@@ -19,14 +19,13 @@ import pytest
 import rooms
 
 import pfkit as pf
-from pfkit.rooms import CORE, EDGE, HOME, MODULES
+from pfkit.rooms import CORE, EDGE, HOME, MODULES, OPTIONAL
 
 ROOT = Path(__file__).resolve().parents[1]
 PACKAGE = ROOT / "pfkit"
 TABLE = [module for modules in CORE.values() for module in modules]
 ORDER = {name: i for i, name in enumerate([*TABLE, *EDGE])}
 FOLDERS = {module.partition(".")[0] for module in TABLE if "." in module}
-OPTIONAL_FRONT_ENDS = {"labs": {"ipywidgets", "IPython"}}  # inside a function, behind a fallback
 CONTENTS = {"", "rooms", *FOLDERS}  # the lazy package, its table, the rooms' first pages
 
 
@@ -74,7 +73,7 @@ def violations(name: str, source: str) -> list[str]:
     found = []
     for full, at_top in imports(source):
         first, _, used = full.partition(".")
-        optional = not at_top and first in OPTIONAL_FRONT_ENDS.get(own, set())
+        optional = not at_top and first in OPTIONAL.get(own, ())
         if first not in allowed and not optional:
             found.append(f"pfkit.{name} imports {first}: only NumPy and {EDGE.get(own, ())}")
         if first != "pfkit" or (own in EDGE and (not used or used in HOME or used in MODULES)):

@@ -35,7 +35,7 @@ from pfkit.errors import (
     require_rng,
     require_shape,
 )
-from pfkit.worlds.map_files import read_pgm, read_settings, write_pgm
+from pfkit.worlds.map_files import read_cells, read_settings, write_pgm
 
 Array = NDArray[np.float64]
 
@@ -159,12 +159,10 @@ class OccupancyGrid:
             If a file is missing, cut off or malformed; names file and reason.
         """
         path = as_path("path", path)
-        settings = read_settings(path)
-        grey, white = read_pgm(path.parent / str(settings.pop("image")))
-        shade = grey[::-1] / white  # the picture's first row is the top of the map
-        p = shade if settings.pop("negate") else 1.0 - shade
+        found = read_settings(path)
+        p = read_cells(path, found)
         try:
-            return cls(p, **settings)  # type: ignore[arg-type]
+            return cls(p, found.resolution, found.origin, found.occupied_thresh, found.free_thresh)
         except (ParameterError, ShapeError) as problem:
             raise DataError(f"{path}: {problem}") from None
 

@@ -1,5 +1,7 @@
 """ROS maps on disk: round trips, and every way a file can be wrong."""
 
+import sys
+
 import numpy as np
 import pytest
 
@@ -71,17 +73,17 @@ def test_text_pictures_may_hold_comments_and_any_line_breaks(tmp_path):
 
 def test_windows_line_ends_and_byte_order_marks(room):
     room.write_bytes(b"\xef\xbb\xbf" + GOOD.replace("\n", "\r\n").encode())
-    assert read_settings(room)["image"] == "room.pgm"
+    assert read_settings(room).image == "room.pgm"
 
 
 @pytest.mark.parametrize(
     "old, new, reason",
     [
-        ("negate: 0\n", "", "negate missing"),
+        ("image: room.pgm\n", "", "image missing"),
         ("negate: 0", "negate: 2", "0 or 1"),
         ("negate: 0", "negate: 0\nnegate: 1", "twice"),
-        ("negate: 0", "inverse: 0", "line 4"),
-        ("negate: 0", "negate", "line 4"),
+        ("negate: 0", "inverse: 0", "line 4: inverse.*negate is missing"),
+        ("negate: 0", "negate", "line 4: expected key: value"),
         ("0.050000", "five", "resolution must be a number"),
         ("0.050000", "", "resolution"),
         ("0.050000", ".nan", "resolution"),
@@ -89,9 +91,12 @@ def test_windows_line_ends_and_byte_order_marks(room):
         ("0.050000", "0", "resolution must be > 0"),
         ("[-1.5, 2.0, 0.25]", "[-1.5, 2.0]", r"\[x, y, yaw\]"),
         ("0.65", "0.1", "thresholds"),
-        ("0.65", "0.1", "thresholds"),
         ("0.65", "1.1", "occupied_thresh"),
-        ("free_thresh: 0.196", "free_thresh: 0.196\nmode: scale", "mode scale"),
+        (
+            "free_thresh: 0.196",
+            "free_thresh: 0.196\nmode: grey",
+            "mode must be one of trinary, scale, raw, got 'grey'",
+        ),
         ("room.pgm", "hall.pgm", "hall.pgm: cannot be read"),
     ],
 )
@@ -105,15 +110,16 @@ def test_bad_settings_name_the_file_and_the_reason(room, old, new, reason):
 @pytest.mark.parametrize(
     "picture, reason",
     [
-        (b"", "must start with P2 or P5"),
-        (b"P6\n1 1\n255\nabc", "must start with P2 or P5"),
-        (b"\x89PNG\r\n", "must start with P2 or P5"),
+        (b"", "not a picture that is known"),
+        (b"a plan of the house", "not a picture that is known"),
+        (b"\x89PNG\r\n", "not a picture that is known"),
         (b"P5\n3\n", "bad header"),
         (b"P5\n3 two\n255\nabcdef", "bad header"),
         (b"P5\n-3 2\n255\nabcdef", "bad header"),
         (b"P5\n3 2 # and then nothing", "bad header"),
         (b"P5\n0 2\n255\n", "sizes must be"),
-        (b"P5\n3 2\n65535\nabcdefabcdef", "8 bits"),
+        (b"P5\n3 2\n65536\nabcdefabcdef", "white 65536"),
+        (b"P5\n3 2\n65535\nabcdefabcde", "6 pixels, the file has 5"),
         (PICTURE[:-1], "cut off"),
         (PICTURE + b"more", "cut off"),
         (b"P2\n3 2\n255\n1 2 3 4 5", "6 pixels, the file has 5"),
@@ -148,3 +154,76 @@ def test_the_bytes_written_are_the_bytes_read(tmp_path):
 def test_what_is_no_path_is_named():
     with pytest.raises(pf.ParameterError, match="path must be a path, got 3"):
         pf.OccupancyGrid.load(3)
+
+
+def occupancy_of(room, mode="trinary", negate="0"):
+    text = GOOD.replace("room.pgm", "room.png").replace("negate: 0", f"negate: {negate}")
+    room.write_text(f"{text}mode: {mode}\n")
+    world = pf.OccupancyGrid.load(room)
+    return np.where(world.occupied, 100, np.where(world.free, 0, -1))[::-1]
+
+
+def draw(room, pixels, mode):
+    Image = pytest.importorskip("PIL.Image")
+    image = Image.fromarray(np.asarray(pixels, dtype=np.uint8), mode=None)
+    image.convert(mode).save(room.with_name("room.png"))
+
+
+GREYS = np.array([[0, 254, 205], [255, 100, 1]], dtype=np.uint8)
+
+
+@pytest.mark.parametrize("mode", ["L", "RGB", "P"])
+def test_a_png_is_the_pgm_of_the_same_greys(room, mode):
+    draw(room, GREYS, mode)
+    plain = pf.OccupancyGrid.load(room)
+    np.testing.assert_array_equal(
+        occupancy_of(room), np.where(plain.occupied, 100, np.where(plain.free, 0, -1))[::-1]
+    )
+
+
+@pytest.mark.parametrize("word, turned", [("false", False), ("True", True), ("1", True)])
+def test_negate_in_words(room, word, turned):
+    p = pf.OccupancyGrid.load(room).p
+    room.write_text(GOOD.replace("negate: 0", f"negate: {word}"))
+    np.testing.assert_allclose(pf.OccupancyGrid.load(room).p, 1 - p if turned else p)
+
+
+def test_without_negate_white_is_free_and_foreign_keys_are_passed_over(room):
+    p = pf.OccupancyGrid.load(room).p
+    room.write_text(GOOD.replace("negate: 0\n", ""))
+    np.testing.assert_array_equal(pf.OccupancyGrid.load(room).p, p)
+    room.write_text(GOOD.replace("[-1.5, 2.0, 0.25]", "[-1.5, 2.0,\n  0.25]") + "zones:\n  a: 3\n")
+    assert pf.OccupancyGrid.load(room).origin == (-1.5, 2.0, 0.25)
+
+
+def test_transparency_is_unknown_in_scale_and_a_colour_in_trinary(room):
+    see_through = np.stack([GREYS] * 3 + [np.full_like(GREYS, 255)], axis=-1)
+    see_through[0, 0, 3] = see_through[1, 0, 3] = 0
+    draw(room, see_through, "RGBA")
+    assert occupancy_of(room, "scale")[:, 0].tolist() == [-1, -1]
+    # (0 + 0 + 0 + 0) / 4 is a wall; (255 * 3 + 0) / 4 = 191 is .25 occupied: between the two
+    assert occupancy_of(room)[:, 0].tolist() == [100, -1]
+
+
+def test_raw_greys_are_per_cent(room):
+    draw(room, [[0, 100, 50], [255, 10, 101]], "L")
+    assert occupancy_of(room, "raw").tolist() == [[0, 100, -1], [-1, 0, -1]]
+
+
+def test_sixteen_bits_a_pixel(room):
+    deep = (GREYS.astype(">u2") * 257).tobytes()
+    p = pf.OccupancyGrid.load(room).p
+    (room.parent / "room.pgm").write_bytes(b"P5\n3 2\n65535\n" + deep)
+    np.testing.assert_allclose(pf.OccupancyGrid.load(room).p, p, atol=1e-12)
+
+
+def test_a_cut_png_and_pillow_left_out(room, monkeypatch):
+    draw(room, np.tile(GREYS, (40, 40)), "L")
+    room.write_text(GOOD.replace("room.pgm", "room.png"))
+    path = room.with_name("room.png")
+    path.write_bytes(path.read_bytes()[:-40])
+    with pytest.raises(pf.DataError, match=r"room.png: no sound picture"):
+        pf.OccupancyGrid.load(room)
+    monkeypatch.setitem(sys.modules, "PIL", None)
+    with pytest.raises(pf.DataError, match=r"pip install 'pfkit\[logs\]'"):
+        pf.OccupancyGrid.load(room)
