@@ -149,6 +149,9 @@ from pfkit.judging.comparison import compare as compare
 from pfkit.judging.comparison import paired as paired
 from pfkit.judging.comparison import root_mean_square as root_mean_square
 from pfkit.judging.comparison import wilson_interval as wilson_interval
+from pfkit.judging.intervals import cluster_interval as cluster_interval
+from pfkit.judging.intervals import t_interval as t_interval
+from pfkit.judging.intervals import t_quantile as t_quantile
 from pfkit.judging.table import summarise as summarise
 from pfkit.judging.table import tabulate as tabulate
 from pfkit.judging.consistency import coverage as coverage

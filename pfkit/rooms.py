@@ -91,6 +91,7 @@ CORE: dict[str, dict[str, str]] = {
         "judging.comparison": (
             "Comparison Interval bootstrap_interval compare paired root_mean_square wilson_interval"
         ),
+        "judging.intervals": "cluster_interval t_interval t_quantile",
         "judging.table": "summarise tabulate",
         "judging.consistency": "coverage nees nees_band",
         "judging.diagnostics": (
