@@ -60,6 +60,7 @@ from pfkit.worlds.symmetry import symmetries as symmetries
 from pfkit.models.motion import MotionModel as MotionModel
 from pfkit.models.motion import VelocityMotion as VelocityMotion
 from pfkit.models.motion import drive_arc as drive_arc
+from pfkit.models.motion import inverse_arc as inverse_arc
 from pfkit.models.odometry_motion import OdometryMotion as OdometryMotion
 from pfkit.models.odometry_motion import odometry_control as odometry_control
 from pfkit.models.wheels import Bicycle as Bicycle
@@ -142,6 +143,10 @@ from pfkit.logs.odometry import fill_in as fill_in
 from pfkit.logs.odometry import preintegrate as preintegrate
 from pfkit.logs.calibration import Calibration as Calibration
 from pfkit.logs.calibration import calibrate as calibrate
+from pfkit.logs.encoders import WheelGeometry as WheelGeometry
+from pfkit.logs.encoders import calibrate_wheels as calibrate_wheels
+from pfkit.logs.encoders import encoder_odometry as encoder_odometry
+from pfkit.logs.encoders import square_turns as square_turns
 from pfkit.judging.comparison import Comparison as Comparison
 from pfkit.judging.comparison import Interval as Interval
 from pfkit.judging.comparison import bootstrap_interval as bootstrap_interval

@@ -48,7 +48,7 @@ CORE: dict[str, dict[str, str]] = {
         "worlds.arenas": "",
     },
     "models": {
-        "models.motion": "MotionModel VelocityMotion drive_arc",
+        "models.motion": "MotionModel VelocityMotion drive_arc inverse_arc",
         "models.odometry_motion": "OdometryMotion odometry_control",
         "models.wheels": "Bicycle DifferentialDrive",
         "models.targets": "CircleTarget FixedTarget HeadingTarget LineTarget",
@@ -86,6 +86,7 @@ CORE: dict[str, dict[str, str]] = {
         "logs.simulate": "sense simulate_log",
         "logs.odometry": "ComposedMotion Drift Preintegrated preintegrate fill_in",
         "logs.calibration": "Calibration calibrate",
+        "logs.encoders": "WheelGeometry calibrate_wheels encoder_odometry square_turns",
     },
     "judging": {
         "judging.comparison": (

@@ -108,6 +108,7 @@ BAD: dict[str, list[tuple[Any, str]]] = {
     "sensor": NOT_MODELS,
     "world": NOT_MODELS,
     "function": [(None, "None"), (3, "3")],
+    "wheels": [(None, "None"), (3, "3")],
     "z": [("near", "near"), ([[NAN], [0.0], [0.0]], "nan"), (np.zeros((4, 2)), "(4, 2)")],
     "named z": [([[1.0], [0.0], [99.0]], "99"), ([[1.0], [0.0], [0.5]], "0.5")],
     "ancestors": [
@@ -228,9 +229,16 @@ TABLE: dict[str, Row] = {
         pf.drive_arc,
         dict(pose=pose, distance=(1.0, "numbers"), turn=(0.1, "numbers")),
     ),
+    "inverse_arc": (
+        pf.inverse_arc,
+        dict(pose0=(POSE, "pose or unknown"), pose1=(POSE, "pose or unknown")),
+    ),
     "VelocityMotion": (pf.VelocityMotion, dict(alpha=((0.1,) * 4, "alpha4"))),
     "OdometryMotion": (pf.OdometryMotion, dict(alpha=((0.1,) * 4, "alpha4"))),
-    "odometry_control": (pf.odometry_control, dict(pose0=pose, pose1=pose)),
+    "odometry_control": (
+        pf.odometry_control,
+        dict(pose0=(POSE, "pose or unknown"), pose1=(POSE, "pose or unknown")),
+    ),
     "log_gaussian": (pf.log_gaussian, dict(error=(0.1, "number"), sigma=one)),
     "RangeBearing": (
         pf.RangeBearing,
@@ -336,6 +344,8 @@ BEAMS = pf.BeamModel(GRID, np.array((0.0, 1.0)), 5.0)
 NOISE = pf.Drift()
 MEMORY = pf.Memory()
 TREE = np.zeros((T, M), dtype=np.int64)
+WHEELS = pf.WheelGeometry(0.1, 0.1, 0.5)
+SQUARES = [pf.square_turns(4.0, WHEELS, clockwise) for clockwise in (True, False)]
 HISTORY = pf.run(LOG, BEL, MOTION, SENSOR, RNG)
 SMOOTH = pf.run_gaussian(LOG, GAUSS, MOTION, SENSOR)
 ERRORS, COVARIANCES = np.zeros((2, 5)), np.repeat(np.eye(2)[..., None], 5, axis=2)
@@ -611,6 +621,20 @@ TABLE |= {
     ),
     "Calibration": (pf.Calibration, dict(speed=(1.0, "number"), turn=(1.0, "number"))),
     "calibrate": (pf.calibrate, dict(log=(None, "log"))),
+    "WheelGeometry": (pf.WheelGeometry, dict(r_l=one, r_r=one, L=one)),
+    "encoder_odometry": (
+        pf.encoder_odometry,
+        dict(turns=(np.ones((2, T)), "errors"), wheels=(WHEELS, "wheels"), start=pose),
+    ),
+    "square_turns": (pf.square_turns, dict(side=one, wheels=(WHEELS, "wheels"))),
+    "calibrate_wheels": (
+        pf.calibrate_wheels,
+        dict(
+            ends=(np.zeros((2, 2)), "errors"),
+            drives=(SQUARES, "function"),
+            wheels=(WHEELS, "wheels"),
+        ),
+    ),
     "commands": (pf.commands, dict(segments=([(1.0, 0.0, 1.0)], "segments"), dt=one)),
     "PurePursuit": (
         pf.PurePursuit,
@@ -708,6 +732,7 @@ def test_the_good_call_works(name):
 # "'NoneType' object has no attribute 'log_likelihood'" needs no help from us.
 NO_OBJECT = {
     *("particles", "log", "history", "motion", "sensor", "world", "a world", "function", "columns"),
+    "wheels",
 }
 
 

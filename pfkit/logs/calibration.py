@@ -107,7 +107,7 @@ def fit_odometry(log: Log) -> Calibration:
     neutral = np.array([1.0, 1.0, 0.0])
     x, y, theta = error(neutral)
     agree = (np.hypot(x, y) < np.hypot(*truth[:2]) + 0.1) & (np.abs(theta) < ARM)
-    speed, turn, delay = _least_squares(lambda p: error(p)[:, agree].ravel(), neutral)
+    speed, turn, delay = least_squares(lambda p: error(p)[:, agree].ravel(), neutral)
     if not (0.3 < speed < 3 and 0.3 < turn < 3 and abs(delay) < WINDOW / 2):
         raise DataError(
             f"calibration found speed x {speed:.2f}, turn x {turn:.2f}, delay {delay:.2f} s: "
@@ -212,14 +212,17 @@ def _measured(log: Log) -> tuple[NDArray[np.int64], Array]:
     return k[known], z[:, known]
 
 
-def _least_squares(
-    error: Callable[[Array], Array], start: Array, rounds: int = 8, h: float = 1e-3
-) -> Array:
-    """Gauss-Newton: linearise the error (n,) by central differences, solve, repeat."""
+def slopes(error: Callable[[Array], Array], p: Array, h: float = 1e-3) -> Array:
+    """Derivatives (n, P) of an error (n,) by its parameters p (P,), as central differences."""
+    steps = h * np.eye(p.size)
+    return np.stack([(error(p + step) - error(p - step)) / (2 * h) for step in steps], axis=1)
+
+
+def least_squares(error: Callable[[Array], Array], start: Array, rounds: int = 8) -> Array:
+    """Gauss-Newton: linearise the error (n,) about the parameters, solve, repeat."""
     p = start
     for _ in range(rounds):
-        slopes = [(error(p + h * step) - error(p - h * step)) / (2 * h) for step in np.eye(p.size)]
-        p = p - np.linalg.lstsq(np.stack(slopes, axis=1), error(p), rcond=None)[0]
+        p = p - np.linalg.lstsq(slopes(error, p), error(p), rcond=None)[0]
     return p
 
 

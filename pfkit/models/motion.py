@@ -117,6 +117,44 @@ def _arc(pose: Array, distance: Array, turn: Array) -> Array:
     return end
 
 
+def inverse_arc(pose0: ArrayLike, pose1: ArrayLike, backwards: bool = False) -> Array:
+    r"""The arc that leads from one pose to the place of another, and the turn still missing there.
+
+    The chord has the length c and the direction :math:`\beta` as seen from the nose. An arc bends
+    away from its tangent by half of its turn, so
+
+    .. math:: \phi = 2 \beta, \qquad d = c \,/\, \mathrm{sinc}(\tfrac{\phi}{2}), \qquad
+              \phi' = \mathrm{wrap}(\theta_1 - \theta_0 - \phi).
+
+    Parameters
+    ----------
+    pose0, pose1 : array_like (3, ...), metres and radians, before and after; they broadcast
+    backwards : bool
+        Take the arc that drives in reverse: the chord is then seen from the robot's tail, and
+        the distance is negative.
+
+    Returns
+    -------
+    array (3, ...): distance d (m), turn phi (rad, at most a full one), extra turn phi' (rad).
+    ``drive_arc(pose0, d, phi)``, turned by phi' more, is pose1. A robot that stays where it is
+    drives no arc: its d is 0, and all of its turn is extra (forwards). NaN where a pose is NaN.
+
+    Raises
+    ------
+    ShapeError, ParameterError
+        If a pose does not have three components, or a value is infinite.
+
+    Notes
+    -----
+    Source: Probabilistic Robotics, Table 5.1, lines 2 to 9, by the chord in place of the circle's
+    centre, which lies at infinity when the robot drives straight.
+    """
+    dx, dy, turn = between(pose0, pose1)
+    sign = -1.0 if backwards else 1.0
+    chord, beta = np.hypot(dx, dy), np.arctan2(sign * dy, sign * dx)
+    return np.stack((sign * chord / np.sinc(beta / np.pi), 2.0 * beta, wrap(turn - 2.0 * beta)))
+
+
 @dataclass(frozen=True)
 class VelocityMotion:
     r"""Drive with a commanded speed and turn rate for a time: u = (v, omega, dt).
@@ -184,13 +222,13 @@ class VelocityMotion:
     def log_density(self, pose1: Array, u: ArrayLike, pose0: Array) -> Array:
         r"""Log of the density of a move, in 1 / (square metre and radian).
 
-        One arc forwards and one backwards explain a move of chord c in the direction
-        :math:`\beta` from the robot's nose: :math:`\phi = 2\beta`, and
-        :math:`\phi = 2\,\mathrm{wrap}(\beta + \pi)`. Each gives the errors
-        of v, omega and gamma, and
+        One arc forwards and one backwards explain a move (`inverse_arc`). Each gives the
+        errors of v, omega and gamma, and
 
         .. math:: dx\,dy\,d\theta = \tfrac12\, c\, |\mathrm{sinc}(\tfrac{\phi}{2})|\,
-                  \Delta t^3\; d\hat v\, d\hat\omega\, d\hat\gamma .
+                  \Delta t^3\; d\hat v\, d\hat\omega\, d\hat\gamma
+
+        with the chord c and the turn :math:`\phi` of that arc.
 
         Parameters
         ----------
@@ -215,17 +253,16 @@ class VelocityMotion:
         v, omega, dt = u
         require_positive("dt", dt)
         var_v, var_omega, var_gamma = self.variances(u)
-        dx, dy, turn = between(pose0, pose1)
-        chord, beta = np.hypot(dx, dy), np.arctan2(dy, dx)
         branches = []
-        for sign, half in ((1.0, beta), (-1.0, wrap(beta + np.pi))):
-            bend = np.sinc(half / np.pi)
+        for backwards in (False, True):
+            distance, turn, extra = inverse_arc(pose0, pose1, backwards)
+            bend = np.sinc(turn / (2 * np.pi))
             with np.errstate(divide="ignore"):  # the pole
-                log_jacobian = np.log(0.5 * chord * bend * dt**3)
+                log_jacobian = np.log(0.5 * np.abs(distance) * bend**2 * dt**3)
             branches.append(
-                log_noise(sign * chord / (bend * dt) - v, var_v)
-                + log_noise(2 * half / dt - omega, var_omega)
-                + log_noise(wrap(turn - 2 * half) / dt, var_gamma)
+                log_noise(distance / dt - v, var_v)
+                + log_noise(turn / dt - omega, var_omega)
+                + log_noise(extra / dt, var_gamma)
                 - log_jacobian
             )
         return np.logaddexp(*branches)

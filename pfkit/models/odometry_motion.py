@@ -38,7 +38,8 @@ def odometry_control(pose0: ArrayLike, pose1: ArrayLike) -> Array:
     Returns
     -------
     u : array (3, ...): rot1 (rad), trans (m), rot2 (rad). A robot that turned on the spot has
-        no direction of travel; then rot1 is 0 and rot2 takes the whole turn.
+        no direction of travel; then rot1 is 0 and rot2 takes the whole turn. NaN
+        where a pose is NaN.
 
     Notes
     -----
@@ -47,7 +48,7 @@ def odometry_control(pose0: ArrayLike, pose1: ArrayLike) -> Array:
     """
     dx, dy, turn = between(pose0, pose1)
     trans = np.hypot(dx, dy)
-    rot1 = np.where(trans > 0, np.arctan2(dy, dx), 0.0)
+    rot1 = np.where(trans == 0, 0.0, np.arctan2(dy, dx))
     return np.stack((rot1, trans, wrap(turn - rot1)))
 
 

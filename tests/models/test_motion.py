@@ -119,6 +119,54 @@ def test_noise_has_the_stated_variances():
     assert (np.abs(correlation) < 5 / math.sqrt(M)).all()
 
 
+@pytest.mark.parametrize("backwards", [False, True])
+def test_the_inverse_arc_leads_back_to_where_one_came_from(backwards):
+    """Any two poses, the same numbers again by driving: forwards, backwards, at any heading."""
+    rng = np.random.default_rng(7)
+    pose0 = rng.uniform((-3, -3, -np.pi), (3, 3, np.pi), (200, 3)).T
+    pose1 = rng.uniform((-3, -3, -np.pi), (3, 3, np.pi), (200, 3)).T
+    distance, turn, extra = pf.inverse_arc(pose0, pose1, backwards)
+    assert (np.sign(distance) == (-1 if backwards else 1)).all()
+    assert (np.abs(turn) <= 2 * np.pi).all() and (np.abs(extra) <= np.pi).all()
+    reached = pf.drive_arc(pose0, distance, turn)
+    np.testing.assert_allclose(reached[:2], pose1[:2], atol=1e-9)
+    np.testing.assert_allclose(pf.wrap(reached[2] + extra - pose1[2]), 0, atol=1e-9)
+
+
+def test_the_inverse_arc_is_the_circle_of_the_textbook():
+    """Table 5.1 by the centre of the circle: the same distance and turn, where it has one."""
+    (x, y, theta), (x1, y1, theta1) = pose0, pose1 = (0.3, -0.2, 0.7), (1.4, 0.9, 1.5)
+    c, s = math.cos(theta), math.sin(theta)
+    mu = 0.5 * ((x - x1) * c + (y - y1) * s) / ((y - y1) * c - (x - x1) * s)
+    cx, cy = (x + x1) / 2 + mu * (y - y1), (y + y1) / 2 + mu * (x1 - x)
+    radius = math.hypot(x - cx, y - cy)
+    turn = math.atan2(y1 - cy, x1 - cx) - math.atan2(y - cy, x - cx)
+    expected = (radius * turn, turn, theta1 - theta - turn)
+    np.testing.assert_allclose(pf.inverse_arc(pose0, pose1), expected, rtol=1e-12)
+
+
+def test_the_inverse_arc_of_straight_lines_and_turns_on_the_spot():
+    ahead, behind = np.array((2.0, 0, 0)), np.array((-2.0, 0, 0))
+    np.testing.assert_array_equal(pf.inverse_arc(np.zeros(3), ahead), (2, 0, 0))
+    np.testing.assert_array_equal(pf.inverse_arc(np.zeros(3), behind, backwards=True), (-2, 0, 0))
+    np.testing.assert_array_equal(pf.inverse_arc(np.zeros(3), (0, 0, 0.5)), (0, 0, 0.5))
+
+
+def test_the_jacobian_is_that_of_driving():
+    """Volume of the poses that a small box of (v, omega, gamma) reaches, by differences."""
+    v, omega, dt, h = 0.9, 0.7, 0.8, 1e-6
+
+    def reached(p):
+        x, y, theta = pf.drive_arc(np.array((1.0, 2.0, 2.5)), p[0] * dt, p[1] * dt)
+        return np.array((x, y, theta + p[2] * dt))
+
+    p = np.array((v, omega, 0.1))
+    columns = [(reached(p + h * e) - reached(p - h * e)) / (2 * h) for e in np.eye(3)]
+    chord = v * dt * np.sinc(omega * dt / 2 / np.pi)
+    volume = 0.5 * chord * np.sinc(omega * dt / 2 / np.pi) * dt**3
+    assert abs(np.linalg.det(np.transpose(columns))) == pytest.approx(volume, rel=1e-6)
+
+
 def polar_integral(motion, u, chord, beta, turn, pose0):
     """Integrate exp(log_density) over poses; polar coordinates take the pole away."""
     c, b, t = np.meshgrid(chord, beta, turn, indexing="ij")

@@ -98,3 +98,9 @@ def test_no_motion_has_no_density_and_bad_alphas_are_named():
         pf.OdometryMotion((0.1, 0.1))  # type: ignore[arg-type]
     with pytest.raises(pf.ParameterError, match="alpha"):
         pf.OdometryMotion((0.1, 0.1, -0.1, 0.1))
+
+
+def test_what_is_unknown_stays_unknown():
+    """A pose that nobody saw has no turn, not a turn of zero."""
+    unknown = np.array((np.nan, 1.0, 0.0))
+    assert np.isnan(pf.odometry_control(np.zeros(3), unknown)).all()
