@@ -48,6 +48,7 @@ from pfkit.particles.modes import Clusters as Clusters
 from pfkit.particles.modes import clusters as clusters
 from pfkit.particles.roughening import regularise as regularise
 from pfkit.particles.roughening import roughen as roughen
+from pfkit.worlds.rig import Rig as Rig
 from pfkit.worlds.log import Log as Log
 from pfkit.worlds.log import Step as Step
 from pfkit.worlds.maps import LandmarkMap as LandmarkMap
@@ -63,6 +64,8 @@ from pfkit.models.motion import drive_arc as drive_arc
 from pfkit.models.motion import inverse_arc as inverse_arc
 from pfkit.models.odometry_motion import OdometryMotion as OdometryMotion
 from pfkit.models.odometry_motion import odometry_control as odometry_control
+from pfkit.models.increments import IncrementMotion as IncrementMotion
+from pfkit.models.increments import increments as increments
 from pfkit.models.wheels import Bicycle as Bicycle
 from pfkit.models.wheels import DifferentialDrive as DifferentialDrive
 from pfkit.models.targets import CircleTarget as CircleTarget
@@ -84,6 +87,7 @@ from pfkit.models.robust import Gate as Gate
 from pfkit.models.robust import OutlierMixture as OutlierMixture
 from pfkit.models.robust import Tempered as Tempered
 from pfkit.models.masked import Masked as Masked
+from pfkit.models.mounted import Mounted as Mounted
 from pfkit.filters.particle_filter import Info as Info
 from pfkit.filters.particle_filter import predict as predict
 from pfkit.filters.particle_filter import resample as resample
@@ -124,11 +128,17 @@ from pfkit.exact.gaussian import unscented as unscented
 from pfkit.exact.smoother import GaussianHistory as GaussianHistory
 from pfkit.exact.smoother import rts_smooth as rts_smooth
 from pfkit.exact.smoother import run_gaussian as run_gaussian
+from pfkit.logs.odometry import ComposedMotion as ComposedMotion
+from pfkit.logs.odometry import Drift as Drift
+from pfkit.logs.odometry import Preintegrated as Preintegrated
+from pfkit.logs.odometry import fill_in as fill_in
+from pfkit.logs.odometry import preintegrate as preintegrate
+from pfkit.logs.headings import face_course as face_course
+from pfkit.logs.logfile import read_log as read_log
+from pfkit.logs.logfile import save_log as save_log
 from pfkit.logs.datasets import load_log as load_log
 from pfkit.logs.datasets import load_mrclam as load_mrclam
 from pfkit.logs.datasets import load_plaza as load_plaza
-from pfkit.logs.logfile import read_log as read_log
-from pfkit.logs.logfile import save_log as save_log
 from pfkit.logs.routes import PurePursuit as PurePursuit
 from pfkit.logs.routes import commands as commands
 from pfkit.logs.driving import drive as drive
@@ -136,11 +146,6 @@ from pfkit.logs.faults import FieldOfView as FieldOfView
 from pfkit.logs.faults import Outliers as Outliers
 from pfkit.logs.simulate import sense as sense
 from pfkit.logs.simulate import simulate_log as simulate_log
-from pfkit.logs.odometry import ComposedMotion as ComposedMotion
-from pfkit.logs.odometry import Drift as Drift
-from pfkit.logs.odometry import Preintegrated as Preintegrated
-from pfkit.logs.odometry import fill_in as fill_in
-from pfkit.logs.odometry import preintegrate as preintegrate
 from pfkit.logs.calibration import Calibration as Calibration
 from pfkit.logs.calibration import calibrate as calibrate
 from pfkit.logs.encoders import WheelGeometry as WheelGeometry

@@ -38,6 +38,7 @@ CORE: dict[str, dict[str, str]] = {
         "particles.roughening": "regularise roughen",
     },
     "worlds": {
+        "worlds.rig": "Rig",
         "worlds.log": "Log Step",
         "worlds.maps": "LandmarkMap",
         "worlds.map_files": "",
@@ -50,6 +51,7 @@ CORE: dict[str, dict[str, str]] = {
     "models": {
         "models.motion": "MotionModel VelocityMotion drive_arc inverse_arc",
         "models.odometry_motion": "OdometryMotion odometry_control",
+        "models.increments": "IncrementMotion increments",
         "models.wheels": "Bicycle DifferentialDrive",
         "models.targets": "CircleTarget FixedTarget HeadingTarget LineTarget",
         "models.sensors": "Compass Position Sensor SensorModel",
@@ -60,6 +62,7 @@ CORE: dict[str, dict[str, str]] = {
         "models.likelihood_field": "LikelihoodField",
         "models.robust": "Gate OutlierMixture Tempered",
         "models.masked": "Masked",
+        "models.mounted": "Mounted",
     },
     "filters": {
         "filters.particle_filter": "Info predict resample step take update",
@@ -78,13 +81,16 @@ CORE: dict[str, dict[str, str]] = {
         "exact.smoother": "GaussianHistory rts_smooth run_gaussian",
     },
     "logs": {
-        "logs.datasets": "load_log load_mrclam load_plaza",
+        "logs.odometry": "ComposedMotion Drift Preintegrated preintegrate fill_in",
+        "logs.headings": "face_course",
+        "logs.datasets.text": "",
+        "logs.datasets.timeline": "",
         "logs.logfile": "read_log save_log",
+        "logs.datasets": "load_log load_mrclam load_plaza",
         "logs.routes": "PurePursuit commands",
         "logs.driving": "drive",
         "logs.faults": "Outliers FieldOfView",
         "logs.simulate": "sense simulate_log",
-        "logs.odometry": "ComposedMotion Drift Preintegrated preintegrate fill_in",
         "logs.calibration": "Calibration calibrate",
         "logs.encoders": "WheelGeometry calibrate_wheels encoder_odometry square_turns",
     },

@@ -34,11 +34,17 @@ from pfkit.errors import (
 from pfkit.filters.history import History
 from pfkit.geometry import wrap
 from pfkit.judging.table import Table, tabulate
+from pfkit.models.increments import IncrementMotion
 from pfkit.models.motion import MotionModel, VelocityMotion
+from pfkit.models.odometry_motion import OdometryMotion
 from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
-ARC = VelocityMotion()
+MOTIONS = {
+    "speeds": VelocityMotion(),
+    "turns": OdometryMotion(),
+    "increments": IncrementMotion(),
+}
 
 
 def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
@@ -175,7 +181,9 @@ def settling_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.fl
     return np.append(t, np.inf)[len(t) - late]
 
 
-def dead_reckoning(log: Log, motion: MotionModel = ARC, start: ArrayLike | None = None) -> Array:
+def dead_reckoning(
+    log: Log, motion: MotionModel | None = None, start: ArrayLike | None = None
+) -> Array:
     r"""Follow the controls without noise and without measurements.
 
     .. math:: \hat x_t = E[x_t \mid u_t, \hat x_{t-1}]
@@ -183,8 +191,8 @@ def dead_reckoning(log: Log, motion: MotionModel = ARC, start: ArrayLike | None 
     Parameters
     ----------
     log : Log
-    motion : MotionModel
-        The arcs of u = (v, omega, dt) if left out.
+    motion : MotionModel, optional
+        What the log's rig says if left out; without a rig the arcs of u = (v, omega, dt).
     start : array_like (D,) or (D, B, 1), optional
         The pose before the first control; the log's own start if left out.
 
@@ -202,6 +210,8 @@ def dead_reckoning(log: Log, motion: MotionModel = ARC, start: ArrayLike | None 
     if start is None:
         raise ParameterError("dead reckoning needs a start pose (3,), got None; pass start=")
     pose = require_finite("start", start)
+    if motion is None:
+        motion = MOTIONS["speeds" if log.rig is None else log.rig.odometry]
     path = []
     for u in np.moveaxis(log.u, 1, 0):
         pose = motion.mean(pose, u)

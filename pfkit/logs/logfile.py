@@ -11,6 +11,7 @@ file                 rows
 `start.txt`          the true state before the first step
 `landmarks.txt`      the map: id, x, y; or `map.yaml` and `map.pgm` for a grid
 `bounds.txt`         with landmarks: x_min, x_max, y_min, y_max
+`rig.txt`            what u and z mean: sensor, odometry, named, mount, flipped, r_max
 ===================  ==============================================================
 
 Numbers are separated by blanks. The first line, which starts with ``#``, names the columns; a
@@ -30,8 +31,10 @@ from pfkit.logs.datasets.text import read_table
 from pfkit.worlds.log import Log
 from pfkit.worlds.maps import LandmarkMap
 from pfkit.worlds.occupancy import OccupancyGrid
+from pfkit.worlds.rig import Rig
 
 Array = NDArray[np.float64]
+RIG = "rig.txt"
 
 
 def save_log(log: Log, folder: str | Path, digits: int = 17) -> None:
@@ -66,6 +69,8 @@ def save_log(log: Log, folder: str | Path, digits: int = 17) -> None:
         _write(folder / "bounds.txt", ["x_min", "x_max", "y_min", "y_max"], bounds, digits)
     elif isinstance(log.world, OccupancyGrid):
         log.world.save(folder / "map.yaml")
+    if log.rig is not None:
+        (folder / RIG).write_text(_rig_text(log.rig), encoding="utf-8")
 
 
 def read_log(folder: str | Path) -> Log:
@@ -99,7 +104,41 @@ def read_log(folder: str | Path) -> Log:
         world=_read_world(folder),
         source=source,
         outlier=false,
+        rig=_read_rig(folder / RIG),
     )
+
+
+def is_saved(folder: Path) -> bool:
+    """Whether `save_log` wrote the folder."""
+    return (folder / "steps.txt").is_file() or (folder / "measurements.txt").is_file()
+
+
+def _rig_text(rig: Rig) -> str:
+    """A line for each part of a rig: its name, then what it is."""
+    lines = [f"sensor {rig.sensor}", f"odometry {rig.odometry}", f"named {int(rig.named)}"]
+    lines.append("mount " + " ".join(repr(part) for part in rig.mount))
+    return "\n".join([*lines, f"flipped {int(rig.flipped)}", f"r_max {rig.r_max!r}", ""])
+
+
+def _read_rig(path: Path) -> Rig | None:
+    """The rig that a folder states, if it does."""
+    if not path.is_file():
+        return None
+    said = dict(line.split(None, 1) for line in path.read_text("utf-8").splitlines() if line)
+    try:
+        x, y, yaw = (float(word) for word in said["mount"].split())
+        return Rig(
+            said["sensor"].strip(),
+            said["odometry"].strip(),
+            bool(int(said["named"])),
+            (x, y, yaw),
+            bool(int(said["flipped"])),
+            float(said["r_max"]),
+        )
+    except KeyError as missing:
+        raise DataError(f"{path}: no line {missing}; save_log writes it") from None
+    except ValueError as problem:
+        raise DataError(f"{path}: {problem}; save_log writes it") from None
 
 
 def _numbered(letter: str, rows: ArrayLike | None) -> list[str]:

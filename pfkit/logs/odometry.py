@@ -25,6 +25,7 @@ For this to work, errors must add up with the way, not with the number of rows: 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -71,7 +72,11 @@ class Drift:
     def variances(self, u: Array) -> tuple[Array, Array]:
         """Variances a (m^2) and q (rad^2) of steps u = (v, omega, dt), shape (3, T)."""
         v, omega, dt = u
-        amounts = np.stack((np.abs(v) * dt, np.abs(omega) * dt, dt))
+        return self.grown(v * dt, omega * dt, dt)
+
+    def grown(self, way: Array, turn: Array, dt: Array) -> tuple[Array, Array]:
+        """Variances a and q of a way in metres, a turn in radians and a time, (T,) each."""
+        amounts = np.stack((np.abs(way), np.abs(turn), dt))
         return np.asarray(self.drive) @ amounts, np.asarray(self.turn) @ amounts
 
 
@@ -99,34 +104,81 @@ class ComposedMotion:
         return compose(pose, u[:3][column] + error)
 
 
+class Paces(NamedTuple):
+    """Steps of any odometry in one form, arrays (T,).
+
+    Attributes
+    ----------
+    way : metres along the path
+    chord : metres from start to end, negative in reverse
+    bend : radians, the chord's direction from the heading before the step
+    turn : radians
+    dt : seconds
+    """
+
+    way: Array
+    chord: Array
+    bend: Array
+    turn: Array
+    dt: Array
+
+
+def paces(u: Array, odometry: str = "speeds", t: Array | None = None) -> Paces:
+    """Read controls as steps.
+
+    Parameters
+    ----------
+    u : array (3, T), rows as `Rig` names them
+    odometry : "speeds", "turns" or "increments"
+    t : array (T,), seconds, at the ends of the steps; speeds know their own times
+    """
+    first, second, third = require_components("u", u, 3)
+    if odometry == "speeds":
+        way, turn = first * third, second * third
+        return Paces(way, way * np.sinc(turn / (2 * np.pi)), turn / 2, turn, third)
+    dt = np.zeros(first.size) if t is None else np.diff(t, prepend=t[0])
+    if odometry == "turns":
+        return Paces(second, second, first, wrap(first + third), dt)
+    chord = np.hypot(first, second)
+    return Paces(chord, chord, np.arctan2(second, first), third, dt)
+
+
 class Preintegrated:
     """The odometry of a log, integrated once; gives the motion between any two instants.
 
     Parameters
     ----------
-    u : array (3, T), controls v (m/s), omega (rad/s), dt (s)
+    u : array (3, T), controls v (m/s), omega (rad/s), dt (s), or as `odometry` says
     drift : Drift
+    odometry : str, as in `Rig`
+    t : array (T,), seconds, needed by a drift that grows with time if u does not hold it
 
     Attributes
     ----------
     path : array (3, T + 1), dead reckoning from the origin; column k + 1 is the end of step k
     """
 
-    def __init__(self, u: Array, drift: Drift) -> None:
-        v, omega, dt = require_components("u", u, 3)
-        turn = omega * dt
+    def __init__(
+        self, u: Array, drift: Drift, odometry: str = "speeds", t: Array | None = None
+    ) -> None:
+        way, length, bend, turn, dt = paces(u, odometry, t)
         heading = np.concatenate(([0.0], np.cumsum(turn)))
-        direction = heading[:-1] + turn / 2
+        direction = heading[:-1] + bend
         c = np.stack((np.cos(direction), np.sin(direction)))
-        chord = v * dt * np.sinc(turn / (2 * np.pi)) * c
+        chord = length * c
         position = np.hstack((np.zeros((2, 1)), np.cumsum(chord, axis=1)))
         middle = (position[:, :-1] + position[:, 1:]) / 2
-        a, q = drift.variances(u)
+        a, q = drift.grown(way, turn, dt)
         self.path = np.vstack((position, wrap(heading)))
         self._a = _running_sum(a * c[:, None] * c)
         self._q = _running_sum(q)
         self._qm = _running_sum(q * middle)
         self._qmm = _running_sum(q * middle[:, None] * middle)
+
+    @classmethod
+    def of(cls, log: Log, drift: Drift) -> Preintegrated:
+        """The odometry of a log, which is speeds unless its rig says otherwise."""
+        return cls(log.u, drift, "speeds" if log.rig is None else log.rig.odometry, log.t)
 
     def between(self, i: NDArray[np.int64], j: NDArray[np.int64]) -> tuple[Array, Array]:
         """Motion (3, n) from instants i to later instants j of `path`, and its covariance.
@@ -187,7 +239,7 @@ def preintegrate(log: Log, drift: Drift, steps: NDArray[np.int64] | None = None)
 
     Parameters
     ----------
-    log : Log with u = (v, omega, dt)
+    log : Log
     drift : Drift
     steps : int64 array (n,), increasing, optional
         The steps to keep; `informative_steps` if left out. A step with a measurement that is
@@ -199,7 +251,7 @@ def preintegrate(log: Log, drift: Drift, steps: NDArray[np.int64] | None = None)
     """
     steps = informative_steps(log) if steps is None else steps
     ends = steps + 1
-    motion, Sigma = Preintegrated(log.u, drift).between(np.append(0, ends[:-1]), ends)
+    motion, Sigma = Preintegrated.of(log, drift).between(np.append(0, ends[:-1]), ends)
     return replace(
         log,
         t=log.t[steps],
@@ -208,6 +260,7 @@ def preintegrate(log: Log, drift: Drift, steps: NDArray[np.int64] | None = None)
         truth=None if log.truth is None else log.truth[:, steps],
         outlier=None if log.outlier is None else [log.outlier[k] for k in steps],
         scored=None if log.scored is None else log.scored[steps],
+        rig=None,
     )
 
 
@@ -218,7 +271,7 @@ def fill_in(
 
     Parameters
     ----------
-    log : Log with u = (v, omega, dt)
+    log : Log
     drift : Drift
     ends : int64 array (n,), increasing from 0
         When the estimates hold: 0 is before the first step, k + 1 at the end of step k.
@@ -246,7 +299,7 @@ def fill_in(
         raise ShapeError(f"Sigma must be {(3, *estimate.shape)}, got {Sigma.shape}")
     now = np.arange(1, len(log) + 1)
     latest = np.searchsorted(ends, now, side="right") - 1
-    motion, grown = Preintegrated(log.u, drift).between(ends[latest], now)
+    motion, grown = Preintegrated.of(log, drift).between(ends[latest], now)
     batch = (..., *(None,) * (estimate.ndim - 2))
     pose, before = estimate[:, latest], Sigma[:, :, latest]
     moved = compose(pose, motion[batch])

@@ -19,6 +19,7 @@ particle sets ``(3, B, M)``.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from typing import Any
 
@@ -35,12 +36,29 @@ from pfkit.errors import (
 )
 from pfkit.logs.driving import Driver, Kidnap, drive
 from pfkit.logs.faults import Outliers
+from pfkit.models.association import MaximumLikelihood
+from pfkit.models.beams import BeamModel
+from pfkit.models.increments import IncrementMotion
+from pfkit.models.landmark_sensors import Bearing, Range, RangeBearing
 from pfkit.models.masked import Masked
-from pfkit.models.motion import MotionModel
+from pfkit.models.motion import MotionModel, VelocityMotion
+from pfkit.models.mounted import Mounted
 from pfkit.models.odometry_motion import OdometryMotion
 from pfkit.worlds.log import Log
+from pfkit.worlds.rig import Rig
 
 Array = NDArray[np.float64]
+MOTIONS: dict[type, str] = {
+    VelocityMotion: "speeds",
+    OdometryMotion: "turns",
+    IncrementMotion: "increments",
+}
+SENSORS: dict[type, str] = {
+    RangeBearing: "range-bearing",
+    Range: "range",
+    Bearing: "bearing",
+    BeamModel: "laser",
+}
 
 
 def sense(
@@ -155,7 +173,25 @@ def simulate_log(
         world=world,
         source=source,
         outlier=None if outliers is None else false,
+        rig=rig_of(motion, sensor),
     )
+
+
+def rig_of(motion: MotionModel, sensor: Any) -> Rig | None:
+    """What models say of a robot; None where it is no robot that `Rig` knows."""
+    odometry = next((kind for model, kind in MOTIONS.items() if type(motion) is model), None)
+    mount, flipped, named = (0.0, 0.0, 0.0), False, True
+    while not isinstance(sensor, tuple(SENSORS)) and hasattr(sensor, "sensor"):
+        if isinstance(sensor, Mounted):
+            mount, flipped = sensor.mount, sensor.flipped
+        named = named and not isinstance(sensor, MaximumLikelihood)
+        if isinstance(sensor, Masked):  # its rows are one more
+            return None
+        sensor = sensor.sensor
+    kind = next((name for model, name in SENSORS.items() if isinstance(sensor, model)), None)
+    if odometry is None or kind is None:
+        return None
+    return Rig(kind, odometry, named, mount, flipped, getattr(sensor, "r_max", math.inf))
 
 
 def _side_by_side(start: Array, B: int) -> Array:
@@ -186,7 +222,7 @@ def _look(sensor: Any, pose: Array, sight: Callable | None, rng: np.random.Gener
 def _times(u: Array, motion: MotionModel, dt: float | None) -> Array:
     """Times (T,) at the ends of the steps, seconds."""
     T = u.shape[1]
-    if dt is None and (isinstance(motion, OdometryMotion) or len(u) < 3):
+    if dt is None and (isinstance(motion, OdometryMotion | IncrementMotion) or len(u) < 3):
         dt = 1.0
     durations = u[2] if dt is None else np.full(T, require_positive("dt", dt))
     if durations.ndim > 1 and (durations != durations[:, :1]).any():

@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import DataError, as_numbers, require_finite
+from pfkit.worlds.rig import ODOMETRY, Rig
 
 
 class Step(NamedTuple):
@@ -57,6 +58,10 @@ class Log:
     scored : bool array (T,), optional
         Steps at which errors are to be scored; all if left out. A recorded log marks its
         odometry stamps, so that a score does not depend on when the sensor spoke.
+    rig : Rig, optional
+        What the rows of u and z mean; `localise` wants to know.
+    notes : tuple of str
+        What a reader mended or decided, a sentence each.
 
     Raises
     ------
@@ -74,6 +79,8 @@ class Log:
     source: str = ""
     outlier: Sequence[NDArray[np.bool_]] | None = field(default=None, repr=False)
     scored: NDArray[np.bool_] | None = field(default=None, repr=False)
+    rig: Rig | None = None
+    notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         for name in ("t", "u", "truth", "start"):
@@ -103,6 +110,22 @@ class Log:
                 f"each z must be an array (n, K), got {self.z[bare[0]]!r:.60} at step {bare[0]}; "
                 "one measurement is one column"
             )
+        if self.rig is not None:
+            self._require_rows(self.rig)
+
+    def _require_rows(self, rig: Rig) -> None:
+        """The rows of u and z must be those that the rig states."""
+        rows = {zk.shape[0] for zk in self.z if zk.shape[1]} - {len(rig.rows)}
+        if rows:
+            raise DataError(
+                f"the sensor {rig.sensor} has {len(rig.rows)} rows ({', '.join(rig.rows)}), but z "
+                f"has {rows.pop()}; state another sensor, or named=False"
+            )
+        if len(self.u) != len(ODOMETRY[rig.odometry]):
+            raise DataError(
+                f"odometry as {rig.odometry} has the rows {', '.join(ODOMETRY[rig.odometry])}, "
+                f"but u has {len(self.u)}; state another"
+            )
 
     def _require_one_length(self) -> None:
         T = len(self.t)
@@ -124,13 +147,14 @@ class Log:
             yield Step(float(self.t[k]), self.u[:, k], self.z[k], truth)
 
     def __getitem__(self, part: slice) -> Log:
-        """A stretch of the log, e.g. ``log[:500]``; its start is the truth just before it."""
+        """A stretch of the log, e.g. ``log[:500]``; its start is the truth just before it, if known."""
         if not isinstance(part, slice) or part.step not in (None, 1):
             raise DataError(f"a log is cut by slices of step 1, got {part!r}; iterate for steps")
         first, _, _ = part.indices(len(self.t))
         start = self.start
         if first > 0:
-            start = None if self.truth is None else self.truth[:, first - 1]
+            before = None if self.truth is None else self.truth[:, first - 1]
+            start = None if before is None or np.isnan(before).any() else before
         return replace(
             self,
             t=self.t[part],

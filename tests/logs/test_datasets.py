@@ -11,7 +11,7 @@ import pytest
 
 import pfkit as pf
 from pfkit.logs.datasets import find_folder, load_log, load_mrclam, load_plaza
-from pfkit.logs.datasets.text import read_table
+from pfkit.logs.datasets.text import in_order, read_table
 from pfkit.logs.datasets.timeline import held_controls, interpolate_poses
 
 DATA = Path(__file__).parents[2] / "data"
@@ -154,12 +154,71 @@ def test_a_defect_is_one_line_with_file_line_and_reason(folder, name, defect):
         assert f"line {len(lines)}:" in message
 
 
-@pytest.mark.parametrize("name", [name for name in FILES if name.startswith("Robot1")])
+@pytest.mark.parametrize("name", ["Robot1_Odometry.dat", "Robot1_Groundtruth.dat"])
 def test_time_must_not_run_backwards(folder, name):
     lines = (folder / name).read_text().splitlines()
     moved = [*lines[:-2], lines[-1], lines[-2].replace("10.5", "10.4")]
     (folder / name).write_text("\n".join(moved))
     with pytest.raises(pf.DataError, match=rf"line {len(lines)}: time runs backwards"):
+        load_mrclam(folder)
+
+
+def test_measurements_out_of_order_are_sorted_and_counted(folder):
+    expected = load_mrclam(folder)
+    path = folder / "Robot1_Measurement.dat"
+    first, *rest = path.read_text().splitlines()
+    path.write_text("\n".join([*rest, first]))
+    log = load_mrclam(folder)
+    assert all(np.array_equal(x, y) for x, y in zip(log.z, expected.z, strict=True))
+    assert log.notes == (
+        "Robot1_Measurement.dat: 1 rows were out of order and were sorted by time",
+    )
+
+
+def test_rows_of_one_instant_keep_their_order():
+    table = np.array([[3.0, 1.0, 3.0, 1.0, 2.0], [0.0, 1.0, 2.0, 3.0, 4.0]])
+    ordered, notes = in_order(Path("seen.dat"), table)
+    assert ordered[1].tolist() == [1, 3, 4, 0, 2] and "3 rows" in notes[0]
+    assert in_order(Path("seen.dat"), ordered)[1] == []
+
+
+def set_back(path, by):
+    """The second half of a file, `by` seconds earlier."""
+    rows = np.loadtxt(path)
+    rows[len(rows) // 2 :, 0] -= by
+    np.savetxt(path, rows, "%.4f")
+    return len(rows) // 2 + 1
+
+
+@pytest.mark.parametrize("name", ["Odometry", "Measurement", "Groundtruth"])
+def test_a_clock_that_jumped_back_is_named_as_that(tmp_path, name):
+    shutil.copytree(DATA / "mrclam_twin", tmp_path / "p")
+    (tmp_path / "p" / "Robot1_Outlier.dat").unlink()
+    line = set_back(tmp_path / "p" / f"Robot1_{name}.dat", 10)
+    with pytest.raises(pf.DataError, match=rf"line {line}: the clock jumps back by \S+ s.*cut"):
+        load_mrclam(tmp_path / "p")
+
+
+def test_one_landmark_after_the_other_is_no_jump_of_the_clock(tmp_path):
+    shutil.copytree(DATA / "mrclam_twin", tmp_path / "p")
+    (tmp_path / "p" / "Robot1_Outlier.dat").unlink()
+    path = tmp_path / "p" / "Robot1_Measurement.dat"
+    rows = np.loadtxt(path)
+    np.savetxt(path, rows[np.argsort(rows[:, 1], kind="stable")], "%.4f")
+    log, expected = load_mrclam(tmp_path / "p"), load_mrclam(DATA / "mrclam_twin")
+    assert "sorted by time" in log.notes[0]
+    assert all(
+        np.array_equal(np.sort(x), np.sort(y)) for x, y in zip(log.z, expected.z, strict=True)
+    )
+
+
+@pytest.mark.parametrize("offset", [3600.0, -3600.0])
+def test_a_clock_an_hour_off_is_named_as_that(folder, offset):
+    path = folder / "Robot1_Measurement.dat"
+    rows = np.loadtxt(path)
+    rows[:, 0] += offset
+    np.savetxt(path, rows, "%.3f")
+    with pytest.raises(pf.DataError, match=rf"clocks do not agree.*[+]?{offset + 0.25:g} s apart"):
         load_mrclam(folder)
 
 

@@ -22,10 +22,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import DataError
-from pfkit.logs.datasets.text import identities, read_table, read_truth, refuse
+from pfkit.logs.datasets.text import identities, in_order, read_table, read_truth, refuse
 from pfkit.logs.datasets.timeline import merge
 from pfkit.worlds.log import Log
 from pfkit.worlds.maps import LandmarkMap
+from pfkit.worlds.rig import Rig
 
 ODOMETRY = re.compile(r"(?P<prefix>.*_)Odometry\.dat(\.gz)?")
 MARGIN = 1.0  # metres by which the robots' area reaches beyond the landmarks
@@ -86,7 +87,7 @@ def read_mrclam(
 ) -> Log:
     """Read and join the five files; see `pfkit.logs.datasets.load_mrclam`."""
     command = read_table(files.odometry, ("time", "v", "omega"))
-    seen = read_table(files.measurement, ("time", "barcode", "range", "bearing"))
+    seen = read_table(files.measurement, ("time", "barcode", "range", "bearing"), ordered=False)
     refuse(files.measurement, seen[2] < 0, seen[2], "range must be >= 0, got {:g}; delete the line")
     truth = read_truth(files.groundtruth, need_truth)
     landmarks = read_table(files.landmarks, ("subject", "x", "y", "sd of x", "sd of y"))
@@ -94,10 +95,13 @@ def read_mrclam(
     ids = identities(files.landmarks, "subject", landmarks[0])
     world = LandmarkMap(landmarks[1:3], ids, _arena(landmarks[1:3]))
     subject = _subjects(files, seen, barcodes, drop_unknown)
-    kept = np.isin(subject, ids)
-    measured = np.stack((seen[0], seen[2], seen[3], subject))[:, kept]
-    false = _outliers(files, seen[0])[kept] if files.outlier.is_file() else None
-    return merge(command, measured, truth, world, source, command[0, 0], false)
+    labels = _outliers(files, seen[0]) if files.outlier.is_file() else np.zeros(seen.shape[1])
+    rows = np.stack((seen[0], seen[2], seen[3], subject, labels))
+    rows, notes = in_order(files.measurement, rows, seen[1])
+    rows = rows[:, np.isin(rows[3], ids)]
+    false = rows[4] > 0 if files.outlier.is_file() else None
+    rig = Rig("range-bearing")
+    return merge(command, rows[:4], truth, world, source, command[0, 0], rig, false, notes)
 
 
 def _outliers(files: Files, t: NDArray[np.float64]) -> NDArray[np.bool_]:

@@ -6,8 +6,8 @@ Robotics 26(9), 2009). The files in ``data/plaza2`` are text made from the copy 
 gtsam library ships under the BSD licence.
 
 Two traps of this log. Its ranges read metres too long, differently for each beacon. And the
-heading column of the truth points backwards: it holds the course minus pi. The loader turns
-it round, so that ``truth`` has the convention of the whole package.
+heading column of the truth points backwards: it holds the course minus pi. Nobody need know that
+here: `headings` sees it in the data and turns the truth round.
 """
 
 from __future__ import annotations
@@ -17,11 +17,11 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.geometry import wrap
-from pfkit.logs.datasets.text import identities, read_table, read_truth, refuse
+from pfkit.logs.datasets.text import identities, in_order, read_table, read_truth, refuse
 from pfkit.logs.datasets.timeline import merge
 from pfkit.worlds.log import Log
 from pfkit.worlds.maps import LandmarkMap
+from pfkit.worlds.rig import Rig
 
 Array = NDArray[np.float64]
 MARGIN = 20.0  # metres by which the lawn reaches beyond the beacons
@@ -36,11 +36,9 @@ def is_plaza(folder: Path) -> bool:
 def read_plaza(folder: Path, source: str, need_truth: bool = True) -> Log:
     """Read and join the four files; see `pfkit.logs.datasets.load_plaza`."""
     rows = read_table(folder / "odometry.txt", ("time", "distance", "turn"))
-    seen = read_table(folder / "ranges.txt", ("time", "sender", "beacon", "range"))
+    seen = read_table(folder / "ranges.txt", ("time", "sender", "beacon", "range"), ordered=False)
     beacons = read_table(folder / "beacons.txt", ("beacon", "x", "y"))
     truth = read_truth(folder / "truth.txt", need_truth)
-    if truth is not None:
-        truth[3] = wrap(truth[3] + np.pi)
     (x0, y0), (x1, y1) = beacons[1:].min(axis=1) - MARGIN, beacons[1:].max(axis=1) + MARGIN
     ids = identities(folder / "beacons.txt", "beacon", beacons[0])
     world = LandmarkMap(beacons[1:], ids, (x0, x1, y0, y1))
@@ -54,7 +52,9 @@ def read_plaza(folder: Path, source: str, need_truth: bool = True) -> Log:
         folder / "ranges.txt", seen[3] < 0, seen[3], "range must be >= 0, got {:g}; delete the line"
     )
     command = _as_commands(folder / "odometry.txt", rows, None if truth is None else truth[0, 0])
-    return merge(command, seen[[0, 3, 2]], truth, world, source, start=command[0, 0])
+    measured, notes = in_order(folder / "ranges.txt", seen[[0, 3, 2]], seen[2])
+    rig = Rig("range")
+    return merge(command, measured, truth, world, source, command[0, 0], rig, notes=notes)
 
 
 def _as_commands(path: Path, rows: Array, t_truth: float | None) -> Array:

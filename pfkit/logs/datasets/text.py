@@ -22,10 +22,11 @@ from pfkit.errors import DataError
 
 Array = NDArray[np.float64]
 TIME = "time"
+JUMP = 10  # rows in a row that all lie before what came first: the clock was set back
 LARGEST = 1e12  # no second, metre or radian of a log is larger; nanoseconds since 1970 are
 
 
-def read_table(path: Path, columns: Sequence[str]) -> Array:
+def read_table(path: Path, columns: Sequence[str], ordered: bool = True) -> Array:
     """Read whitespace-separated numbers, components first.
 
     Lines that are blank or start with ``#`` are skipped; line ends may be those of any
@@ -36,6 +37,8 @@ def read_table(path: Path, columns: Sequence[str]) -> Array:
     path : Path
         The file; if it is missing, the same name with ``.gz`` is tried.
     columns : names of the columns, in order
+    ordered : bool
+        Whether time must not decrease; if it may, see `in_order`.
 
     Returns
     -------
@@ -48,7 +51,7 @@ def read_table(path: Path, columns: Sequence[str]) -> Array:
         finite, absurdly large or runs backwards in time.
     """
     path = existing(path)
-    text = _read_text(path)
+    text = read_text(path)
     try:
         with warnings.catch_warnings(action="ignore", category=UserWarning):  # "no data": ours
             table = np.loadtxt(io.StringIO(text, newline=None), ndmin=2, unpack=True)
@@ -57,9 +60,64 @@ def read_table(path: Path, columns: Sequence[str]) -> Array:
     if table.size == 0:
         raise DataError(f"{path}: no rows of numbers in the file; it should hold {_list(columns)}")
     sound = (np.abs(table) <= LARGEST).all()  # false for NaN, too
-    if len(table) != len(columns) or not sound or _runs_backwards(table, columns):
+    backwards = ordered and _runs_backwards(table, columns)
+    if len(table) != len(columns) or not sound or backwards:
         raise DataError(_diagnosis(path, text, columns))
     return np.ascontiguousarray(table)
+
+
+def in_order(path: Path, table: Array, names: Array | None = None) -> tuple[Array, list[str]]:
+    """Sort measurements by their time, row 0, stably; say how many were out of order.
+
+    Rows are out of order where several sensors share a file, or where a file holds one landmark
+    after the other. Where a whole stretch of them starts again earlier, the clock was set back,
+    and nobody can sort that.
+
+    Parameters
+    ----------
+    path : Path of the file
+    table : array (n, N)
+    names : array (N,), optional
+        What each row measured.
+
+    Returns
+    -------
+    table : array (n, N)
+    notes : list of str
+
+    Raises
+    ------
+    DataError
+        If the clock jumped back.
+    """
+    back = jump_back(table[0], names)
+    if back is not None:
+        refuse(path, np.arange(table.shape[1]) == back, table[0], _jump(table[0], back))
+    order = np.argsort(table[0], kind="stable")
+    moved = int((np.maximum.accumulate(table[0]) > table[0]).sum())
+    notes = [f"{path.name}: {moved} rows were out of order and were sorted by time"] if moved else []
+    return table[:, order], notes
+
+
+def jump_back(t: Array, names: Array | None = None) -> int | None:
+    """The first row before which the clock jumped back, if it did."""
+    for row in np.flatnonzero(np.diff(t) < 0) + 1:
+        later = np.flatnonzero(t[row:] >= t[row - 1])
+        stretch = slice(row, row + later[0] if later.size else t.size)
+        if stretch.stop - row < JUMP or (np.diff(t[stretch]) < 0).any():
+            continue
+        if names is None or np.isin(names[stretch], names[:row]).any():
+            return int(row)
+    return None
+
+
+def _jump(t: Array, row: int) -> str:
+    """What to say of a clock that jumped back before a row."""
+    by = t[row - 1] - t[row]
+    return (
+        f"the clock jumps back by {by:g} s, from {t[row - 1]:.10g} to {t[row]:.10g}; sorting would "
+        f"mix two stretches: cut the file here, or add {by:g} s to all that follows"
+    )
 
 
 def read_truth(path: Path, needed: bool) -> Array | None:
@@ -99,7 +157,7 @@ def refuse(path: Path, wrong: NDArray[np.bool_], values: Array, reason: str) -> 
     """
     rows = np.flatnonzero(wrong)
     if rows.size:
-        lines = enumerate(_read_text(existing(path)).splitlines(), start=1)
+        lines = enumerate(read_text(existing(path)).splitlines(), start=1)
         line = [number for number, text in lines if _words(text)][rows[0]]
         raise DataError(f"{path}, line {line}: {reason.format(values[rows[0]])}")
 
@@ -113,7 +171,8 @@ def identities(path: Path, name: str, values: Array) -> NDArray[np.int64]:
     return values.astype(np.int64)
 
 
-def _read_text(path: Path) -> str:
+def read_text(path: Path) -> str:
+    """The text of a file, gzipped or not; `DataError` if it is none."""
     try:
         raw = path.read_bytes()
         if raw[:2] == b"\x1f\x8b":  # gzip's signature: trust it more than the name
@@ -152,12 +211,23 @@ def _diagnosis(path: Path, text: str, columns: Sequence[str]) -> str:
             if abs(value) > LARGEST:
                 return f"{where}: {name} is {word}, which is absurd; are the units SI?"
             if name == TIME and value < before:
+                t = _times(text, columns)
+                if t is not None and (back := jump_back(t)) is not None:
+                    return f"{where}: {_jump(t, back)}"
                 return f"{where}: time runs backwards, {word} after {before!r}; sort the file"
             if name == TIME:
                 before = value
         if len(words) != len(columns):
             return f"{where}: expected {len(columns)} numbers ({_list(columns)}), got {len(words)}"
     return f"{path}: cannot be read as a table of numbers; save it as plain text"
+
+
+def _times(text: str, columns: Sequence[str]) -> Array | None:
+    """The column of times of a text, if all of its rows are sound."""
+    try:
+        return np.loadtxt(io.StringIO(text, newline=None), ndmin=2)[:, columns.index(TIME)]
+    except (ValueError, IndexError):
+        return None
 
 
 def _list(columns: Sequence[str]) -> str:

@@ -1,9 +1,10 @@
-"""One clock for three streams: commands, measurements and truth.
+"""One clock for three streams: odometry, measurements and truth.
 
-Wheels, camera and referee each keep a diary of their own. A filter wants one list of
-instants. We take every instant at which somebody spoke, hold each command until the next
-one arrives, file each measurement under its own instant and interpolate the truth - the
-heading on the circle, and not across gaps: where the referee looked away there is no truth.
+Wheels, sensor and referee each keep a diary of their own. A filter wants one list of
+instants. We take every instant at which somebody spoke, file each measurement under its own
+instant and interpolate the truth - the heading on the circle, and not across gaps: where the
+referee looked away there is no truth. A speed holds until the next one arrives; poses that the
+wheels have added up are interpolated, and what counts is the motion between two of them.
 """
 
 from __future__ import annotations
@@ -13,22 +14,26 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from pfkit.errors import DataError
 from pfkit.geometry import wrap
+from pfkit.logs.headings import face_course
+from pfkit.models.increments import increments
 from pfkit.worlds.log import Log
-from pfkit.worlds.maps import LandmarkMap
+from pfkit.worlds.rig import Rig
 
 Array = NDArray[np.float64]
 BLIND = 0.5  # seconds from the nearest sample beyond which there is no truth
 
 
-def interpolate_poses(t: Array, t_truth: Array, poses: Array) -> Array:
-    """Poses (3, T) at times t from samples; NaN further than 0.5 s from every sample.
+def interpolate_poses(t: Array, t_truth: Array, poses: Array, blind: float = BLIND) -> Array:
+    """Poses (3, T) at times t from samples; NaN further than `blind` seconds from every sample.
 
     Parameters
     ----------
     t : array (T,), seconds
     t_truth : array (N,), seconds, never decreasing
-    poses : array (3, N), metres and radians
+    poses : array (3, N), metres and radians; a heading may be NaN
+    blind : float, seconds
     """
     unwrapped = np.vstack((poses[:2], np.unwrap(poses[2])))
     result = np.stack([np.interp(t, t_truth, row) for row in unwrapped])
@@ -36,7 +41,7 @@ def interpolate_poses(t: Array, t_truth: Array, poses: Array) -> Array:
     after = np.clip(np.searchsorted(t_truth, t), 1, len(t_truth) - 1) if len(t_truth) > 1 else 0
     before = np.maximum(after - 1, 0)
     distance = np.minimum(np.abs(t - t_truth[before]), np.abs(t - t_truth[after]))
-    result[:, distance > BLIND] = np.nan
+    result[:, distance > blind] = np.nan
     return result
 
 
@@ -66,43 +71,86 @@ def group_measurements(t: Array, t_z: Array, z: NDArray[Any]) -> list[NDArray[An
 
 
 def merge(
-    command: Array,
+    moved: Array,
     measured: Array,
     truth: Array | None,
-    world: LandmarkMap,
+    world: Any,
     source: str,
     start: float,
+    rig: Rig,
     false: NDArray[np.bool_] | None = None,
+    notes: list[str] | None = None,
 ) -> Log:
     """Build a `Log` from three streams.
 
     Parameters
     ----------
-    command : array (3, N): time, v, omega
-        What is measured before the first or after the last command is left out: nobody says
-        how the robot moved then.
+    moved : array (3, N): time, v, omega; or (4, N): time and the odometer's pose
+        As the rig says: speeds or increments. What is measured before the first or after the
+        last row is left out: nobody says how the robot moved then.
     measured : array (1 + n, N_z): time, then the rows of z
-    truth : array (4, N_x): time, x, y, theta; or None where nobody filmed
-    world : LandmarkMap
+    truth : array (4, N_x): time, x, y, theta (NaN if unknown); or None where nobody filmed
+    world : map
     source : str
     start : float
         The time that becomes t = 0, seconds.
+    rig : Rig
     false : bool array (N_z,), optional
         Labels of false measurements, where they are known.
+    notes : list of str, optional
+        What the reader of the files has to say.
+
+    Raises
+    ------
+    DataError
+        If no measurement falls into the odometry's time: a clock is off.
     """
-    t_command, t_z = command[0] - start, measured[0] - start
-    inside = (t_command[0] <= t_z) & (t_z <= t_command[-1])
+    t_moved, t_z = moved[0] - start, measured[0] - start
+    inside = (t_moved[0] <= t_z) & (t_z <= t_moved[-1])
+    said = [*(notes or []), *_clocks(source, moved[0], measured[0], inside, truth)]
     z, t_z = measured[1:, inside], t_z[inside]
-    t = np.union1d(t_command, t_z)
+    t = np.union1d(t_moved, t_z)
     poses = None if truth is None else interpolate_poses(t, truth[0] - start, truth[1:])
-    return Log(
+    if rig.odometry == "increments":
+        u = increments(interpolate_poses(t, t_moved, moved[1:], np.inf))
+    else:
+        u = held_controls(t, t_moved, *moved[1:])
+    log = Log(
         t,
-        held_controls(t, t_command, *command[1:]),
+        u,
         group_measurements(t, t_z, z),
         truth=poses,
         start=None if poses is None or np.isnan(poses[:, 0]).any() else poses[:, 0],
         world=world,
         source=source,
         outlier=None if false is None else group_measurements(t, t_z, false[inside]),
-        scored=np.isin(t, t_command),
+        scored=np.isin(t, t_moved),
+        rig=rig,
+        notes=tuple(said),
     )
+    return face_course(log)
+
+
+def _clocks(
+    source: str, t: Array, t_z: Array, inside: NDArray[np.bool_], truth: Array | None
+) -> list[str]:
+    """Whether the three streams speak of the same time; `DataError` if two cannot."""
+    if t_z.size and not inside.any():
+        raise DataError(
+            f"{source}: the clocks do not agree: odometry runs from {t[0]:.10g} to {t[-1]:.10g} s, "
+            f"measurements from {t_z[0]:.10g} to {t_z[-1]:.10g} s, {t_z[0] - t[0]:+.10g} s apart at "
+            "the start; shift one clock by what is known (a time zone is a multiple of 3600 s)"
+        )
+    notes = []
+    out = int((~inside).sum())
+    if out > 0.01 * t_z.size:
+        notes.append(
+            f"{out:,} of {t_z.size:,} measurements lie outside the odometry's time and are left "
+            "out; is a clock off?"
+        )
+    if truth is not None and not ((t[0] <= truth[0]) & (truth[0] <= t[-1])).any():
+        notes.append(
+            f"the truth is of another time, {truth[0, 0] - t[0]:+.10g} s apart at the start; "
+            "nothing can be compared with it"
+        )
+    return notes
