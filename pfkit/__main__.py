@@ -9,6 +9,7 @@ import argparse
 import sys
 import tempfile
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -25,9 +26,15 @@ from pfkit.judging.localise import (
     scored_steps,
     settings_for,
 )
+from pfkit.judging.settings import rig_of
 from pfkit.logs.calibration import Calibration
-from pfkit.logs.datasets import load_log
+from pfkit.logs.datasets import LAYOUTS, load_log
+from pfkit.logs.odometry import Drift
 from pfkit.worlds.log import Log
+from pfkit.worlds.maps import LandmarkMap
+from pfkit.worlds.rig import SENSORS, Rig
+
+POSE_SD = 0.1  # radians: how well somebody knows the heading of a pose that he types
 
 
 class OneLineParser(argparse.ArgumentParser):
@@ -42,26 +49,47 @@ def parser() -> argparse.ArgumentParser:
     """The command's arguments."""
     top = OneLineParser(prog="python -m pfkit", description="Particle filters for robots.")
     commands = top.add_subparsers(dest="command", required=True)
+    _add_localise(commands)
+    return top
+
+
+def _add_localise(commands: Any) -> None:
     say = commands.add_parser(
         "localise",
         help="localise a recorded robot and score the answer",
-        description="Localise a recorded robot: an MRCLAM folder (either naming) or Plaza.",
+        description="Localise a recorded robot. Layouts that are known: " + ", ".join(LAYOUTS),
     )
     say.add_argument("folder", help="the log's folder, or its name in PFKIT_DATA or data/")
-    say.add_argument("--start", choices=("known", "global"), default="known")
+    say.add_argument("--start", choices=("known", "global"), default=None, help="default: known")
+    say.add_argument("--pose", metavar="X,Y,THETA", help="start there, metres and radians")
     say.add_argument("--particles", type=int, metavar="N", help="default: by kind of log and start")
     say.add_argument("--seed", type=int, default=0, metavar="S")
     say.add_argument(
         "--calibrate",
         type=float,
         metavar="SECONDS",
-        help="fit odometry and sensor bias to the truth of the first SECONDS; "
+        help="fit odometry, sensor and noise to the truth of the first SECONDS; "
         "default: a third of a range-only log, whose biases hide the robot, else 0 (off)",
     )
+    say.add_argument("--sigma", metavar="R[,PHI]", help="noise of the sensor, metres and radians")
+    say.add_argument(
+        "--drift", metavar="D,TURN", help="noise of the odometry after a metre, metres and radians"
+    )
+    say.add_argument("--bounds", metavar="X0,X1,Y0,Y1", help="where the robot can be, metres")
+    say.add_argument(
+        "--mount",
+        metavar="X,Y,YAW[,flipped]",
+        help="where the sensor sits on the robot, metres and radians; flipped: upside down",
+    )
+    say.add_argument("--recover", action="store_true", help="look elsewhere when the log surprises")
+    say.add_argument("--sensor", choices=tuple(SENSORS), help="where the log does not say")
+    say.add_argument("--unnamed", action="store_true", help="landmarks carry no names, use none")
+    say.add_argument("--map", type=Path, metavar="YAML", help="the map, if it lies elsewhere")
+    for stream in ("odometry", "scan", "truth"):
+        say.add_argument(f"--{stream}", metavar="TOPIC", help=f"of a bag, for the {stream}")
     say.add_argument("--out", type=Path, default=Path(), metavar="DIR", help="default: here")
     say.add_argument("--robot", type=int, metavar="N", help="which, if the folder holds several")
-    say.add_argument("--drop-unknown", action="store_true", help="drop unlisted bar codes")
-    return top
+    say.add_argument("--drop-unknown", action="store_true", help="drop unlisted landmarks")
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -85,21 +113,93 @@ def run(args: argparse.Namespace) -> None:
     """Load, calibrate, filter, score, write."""
     if args.seed < 0:
         raise ParameterError(f"--seed must be >= 0, got {args.seed}")
-    need_truth = args.start == "known" or bool(args.calibrate)
-    log = load_log(args.folder, args.robot, args.drop_unknown, need_truth)
+    if args.start and args.pose:
+        raise ParameterError(f"--start {args.start} and --pose {args.pose}: give one of them")
+    start: Any = _numbers("--pose", args.pose, 3) if args.pose else args.start or "known"
+    need_truth = start == "known" if isinstance(start, str) else False
+    log = load_log(
+        args.folder,
+        args.robot,
+        args.drop_unknown,
+        need_truth or bool(args.calibrate),
+        map=args.map,
+        odometry=args.odometry,
+        scan=args.scan,
+        truth=args.truth,
+    )
+    log = _as_told(log, args)
     print(log)
+    for note in log.notes:
+        print(f"note: {note}")
     _require_writable(args.out)
     calibration = _calibration(log, args.calibrate)
-    settings = settings_for(log, calibration)
+    sigma = None if args.sigma is None else _numbers("--sigma", args.sigma, 1, 2)
+    settings = settings_for(log, calibration, sigma, _drift(args.drift))
+    if args.pose:
+        near = max(settings.start_sd[0], settings.limit / 5)
+        settings = replace(settings, start_sd=(near, near, POSE_SD))
     corrected = log if calibration is None else calibration.apply(log)
     rng = np.random.default_rng(args.seed)
     track = localise(
-        corrected, rng, args.start, args.particles, settings=settings, watch=_progress()
+        corrected,
+        rng,
+        start,
+        args.particles,
+        settings=settings,
+        watch=_progress(),
+        recover=args.recover,
     )
     write_track(args.out / "track.csv", log, track)
-    _report(log, track, args.start, settings.limit)
+    _report(log, track, settings.limit, track.first if start == "global" else -np.inf)
+    _write_hypotheses(args.out / "hypotheses.csv", track)
     print(f"wrote {args.out / 'track.csv'}")
     _draw(args.out / "track.png", log, track.estimate[..., 0])
+
+
+def _numbers(option: str, text: str, *counts: int) -> list[float]:
+    """The numbers of an option, as many as it takes."""
+    words = text.split(",")
+    try:
+        values = [float(word) for word in words]
+    except ValueError:
+        values = []
+    if len(values) not in counts or not np.isfinite(values).all():
+        count = " or ".join(map(str, counts))
+        raise ParameterError(f"{option} takes {count} numbers with commas between, got {text!r}")
+    return values
+
+
+def _drift(text: str | None) -> Drift | None:
+    """Standard deviations after a metre as rates of a variance; a radian turns like a metre."""
+    if text is None:
+        return None
+    drive, turn = _numbers("--drift", text, 2)
+    return Drift((drive**2, 0.0, 0.0), (turn**2, turn**2, turn**2 / 50))
+
+
+def _as_told(log: Log, args: argparse.Namespace) -> Log:
+    """The log with what the options say of its rig and its bounds."""
+    rig = log.rig
+    if args.sensor and (rig is None or rig.sensor != args.sensor):
+        if rig is not None:
+            raise ParameterError(f"--sensor {args.sensor}: the log says it is a {rig.sensor}")
+        rig = Rig(args.sensor)
+    if args.unnamed and rig is not None and rig.named:
+        log = replace(log, rig=None, z=[zk[:-1] for zk in log.z])
+        rig = replace(rig, named=False)
+    if args.mount and rig is not None:
+        mount, _, word = args.mount.partition(",flipped")
+        if word:
+            raise ParameterError(f"--mount ends with ,flipped or with the yaw, got {args.mount!r}")
+        x, y, yaw = _numbers("--mount", mount, 3)
+        rig = replace(rig, mount=(x, y, yaw), flipped=mount != args.mount)
+    world = log.world
+    if args.bounds:
+        if not isinstance(world, LandmarkMap):
+            raise ParameterError("--bounds is for maps of landmarks; a grid has its own")
+        x0, x1, y0, y1 = _numbers("--bounds", args.bounds, 4)
+        world = LandmarkMap(world.positions, world.ids, (x0, x1, y0, y1))
+    return replace(log, rig=rig, world=world)
 
 
 def _require_writable(folder: Path) -> None:
@@ -117,7 +217,7 @@ def _require_writable(folder: Path) -> None:
 def _calibration(log: Log, seconds: float | None) -> Calibration | None:
     """Calibrate on the first seconds; if they are not given, only ranges whose truth is known."""
     if seconds is None:
-        ranges_only = settings_for(log).sensor.components == 2
+        ranges_only = rig_of(log).sensor == "range"
         seconds = (log.t[-1] - log.t[0]) / 3 if ranges_only and log.truth is not None else 0.0
     if seconds == 0:
         return None
@@ -141,9 +241,8 @@ def _progress() -> Callable[[int, int], None]:
     return watch
 
 
-def _report(log: Log, track: Track, start: str, limit: float) -> None:
-    """Print the table, and how fast it was."""
-    since = track.first if start == "global" else -np.inf
+def _report(log: Log, track: Track, limit: float, since: float) -> None:
+    """Print the table of errors, if there is a truth, what else may be, and how fast it was."""
     if scored_steps(log, since).any():
         _print_errors(log, track, limit, since)
     else:
@@ -163,9 +262,21 @@ def _print_errors(log: Log, track: Track, limit: float, since: float) -> None:
     print(f"error below {limit:g} m for good from: {when}")
 
 
+def _write_hypotheses(path: Path, track: Track) -> None:
+    """Print the hypotheses that are left at the end, and write all that there were."""
+    t, mass, mean = track.hypotheses
+    if not t.size:
+        return
+    table = np.vstack((t, mass, mean)).T
+    np.savetxt(path, table, "%.4f", ",", header="t,mass,x,y,theta", comments="", encoding="ascii")
+    print(f"wrote {path}: {np.unique(t).size} instants with more than one hypothesis")
+    for m, (x, y, theta) in zip(mass[t == t[-1]], mean[:, t == t[-1]].T, strict=True):
+        print(f"  at {t[-1]:.1f} s: {m:4.0%} at ({x:.2f}, {y:.2f}) m, {np.degrees(theta):.0f} deg")
+
+
 def _row(name: str, s: Score) -> None:
-    degrees = np.degrees(s.heading_rmse)
-    print(f"{name:16}{s.rmse:10.3f}{s.median:9.3f}{s.p95:9.3f}{degrees:20.2f}")
+    heading = f"{np.degrees(s.heading_rmse):.2f}" if np.isfinite(s.heading_rmse) else "unknown"
+    print(f"{name:16}{s.rmse:10.3f}{s.median:9.3f}{s.p95:9.3f}{heading:>20}")
 
 
 def write_track(path: Path, log: Log, track: Track) -> None:

@@ -105,6 +105,7 @@ CORE: dict[str, dict[str, str]] = {
             "dead_reckoning heading_rmse pose_error position_error rmse settling_time trace"
         ),
         "judging.study": "",
+        "judging.settings": "",
         "judging.localise": "",
     },
 }

@@ -397,6 +397,11 @@ TABLE |= {
     "Gate": (pf.Gate, dict(sensor=sensor, threshold=(0.1, "non-negative"))),
     "Tempered": (pf.Tempered, dict(sensor=sensor, exponent=half)),
     "Masked": (pf.Masked, dict(sensor=sensor)),
+    "Mounted": (pf.Mounted, dict(sensor=sensor, mount=(POSE, "pose"))),
+    "increments": (pf.increments, dict(poses=(np.zeros((3, 4)), "pose"))),
+    "IncrementMotion": (pf.IncrementMotion, dict(sigma=((0.1, 0.1, 0.1), "alpha3"))),
+    "Rig": (lambda mount: pf.Rig("laser", mount=mount), dict(mount=(POSE, "pose"))),
+    "face_course": (pf.face_course, dict(log=log)),
     "MaximumLikelihood": (pf.MaximumLikelihood, dict(sensor=sensor)),
     "BeamModel": (
         pf.BeamModel,
@@ -559,7 +564,7 @@ TABLE |= {
         pf.settling_time,
         dict(t=(LOG.t, "times"), error=(np.zeros(T), "times"), limit=(1.0, "positive or inf")),
     ),
-    "dead_reckoning": (pf.dead_reckoning, dict(log=log, motion=motion, start=pose)),
+    "dead_reckoning": (pf.dead_reckoning, dict(log=log, start=pose)),
     "trace": (pf.trace, dict(history=(HISTORY, "history"))),
     "hypothesis_mass": (
         pf.hypothesis_mass,

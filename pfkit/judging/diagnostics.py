@@ -40,7 +40,7 @@ from pfkit.models.odometry_motion import OdometryMotion
 from pfkit.worlds.log import Log
 
 Array = NDArray[np.float64]
-MOTIONS = {
+MOTIONS: dict[str, MotionModel] = {
     "speeds": VelocityMotion(),
     "turns": OdometryMotion(),
     "increments": IncrementMotion(),

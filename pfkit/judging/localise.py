@@ -1,118 +1,94 @@
-"""Localise a recorded robot: settings that work, one call, an honest score.
+"""Localise a recorded robot: one call, an honest score.
 
-Everything is put together here: calibrate on the first seconds (if their truth may be used),
-compose the odometry between measurements, start from a known pose or from anywhere on the map,
-run the filter, carry its answers on to every odometry stamp, compare with the truth.
+Everything is put together here: compose the odometry between measurements, start from a known pose
+or from anywhere on the map, run the filter, carry its answers on to every odometry stamp, compare
+with the truth. What the filter assumes of a log is chosen in `settings`.
 
-The settings were chosen on the first third of MRCLAM data set 4, robot 3, and of Plaza 2.
-Three things about them are worth knowing.
-
-* sigma_r is three times the spread of the range errors. Consecutive errors to one landmark
-  are nearly equal; a model that takes them as independent counts the same news many times, and
-  a wide sigma is the cheap way to say so.
-* The errors have Student's t with four degrees of freedom: one bar code that was misread must
-  not overrule everything else.
-* Commands are not measurements. What is not calibrated must be paid for as noise (`Drift`).
-
-A global start needs two things more; they were chosen on variants of the log with other starts,
-fewer landmarks and false measurements. The first measurement may be false, and a cloud that
+A global start needs two things more; they were chosen on variants of an MRCLAM log with other
+starts, fewer landmarks and false measurements. The first measurement may be false, and a cloud that
 gathers around it is lost; so one measurement in a thousand may come from anywhere
 (`OutlierMixture`), which keeps a few particles elsewhere. A larger share would doubt true
 measurements, too, and be slow where landmarks are few. And a wide cloud is weighed in stages
 (`tempered_update`), a narrow one plainly: a cloud that has found the robot must not walk after
 a false measurement.
+
+Scans of a laser need thinning first. Thirty beams tell nearly as much as three hundred, and are
+thirty witnesses, not three hundred; a scan from the same spot as the last one tells nothing new at
+all, and a filter that believes it again and again becomes certain of whatever it believed.
+
+In a symmetric world no single answer is honest. The track then comes with `Hypotheses`: heaps of
+particles with the share of the weight of each, wherever there is more than one.
 """
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
-from numpy.typing import NDArray
+from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, ParameterError, require_count
+from pfkit.errors import DataError, ParameterError, require_components, require_count
 from pfkit.filters.particle_filter import predict, resample, update
+from pfkit.filters.recovery import Memory, inject
 from pfkit.filters.tempering import tempered_update
 from pfkit.judging.diagnostics import pose_error, settling_time
-from pfkit.logs.calibration import Calibration, calibrate
+from pfkit.judging.settings import Settings, calibrate_first, rig_of, settings_for
 from pfkit.logs.odometry import (
     ComposedMotion,
     Drift,
+    Preintegrated,
     fill_in,
     informative_steps,
     preintegrate,
 )
-from pfkit.models.landmark_sensors import Range, RangeBearing
 from pfkit.models.robust import OutlierMixture
 from pfkit.models.sensors import Sensor
 from pfkit.particles.estimators import covariance, mean_pose
+from pfkit.particles.modes import clusters
 from pfkit.particles.particle_set import Particles
 from pfkit.particles.priors import gaussian_prior, uniform_prior
 from pfkit.particles.resampling import systematic
 from pfkit.worlds.log import Log
-from pfkit.worlds.maps import LandmarkMap
+
+__all__ = [
+    "Hypotheses",
+    "Score",
+    "Settings",
+    "Track",
+    "calibrate_first",
+    "localise",
+    "score",
+    "scored_steps",
+    "settings_for",
+    "thinned",
+]
 
 Array = NDArray[np.float64]
 Watch = Callable[[int, int], object]
 OUTLIER_SHARE = 0.001  # of the measurements of a global start: may come from anywhere
+BEAMS = 30  # of a scan
+SPACING = 0.1  # metres or radians that the robot moves before it looks again
+LOOKS = 50  # how often along a log hypotheses are counted
+LEAST_MASS = 0.05  # of a hypothesis
 
 
-@dataclass(frozen=True)
-class Settings:
-    """What the filter assumes about one kind of log.
+class Hypotheses(NamedTuple):
+    """Where the robot may be, at the instants at which there was more than one answer.
 
-    Parameters
+    Attributes
     ----------
-    drift : Drift
-    sensor : Sensor
-    M : (int, int), particles for a known and for a global start
-    start_sd : (3,), metres and radians, of a "known" start
-    limit : float, metres; an error below it counts as converged
+    t : array (n,), seconds, one entry per hypothesis
+    mass : array (n,), its share of the weight
+    mean : array (3, n), its mean pose
     """
 
-    drift: Drift
-    sensor: Sensor
-    M: tuple[int, int]
-    start_sd: tuple[float, float, float]
-    limit: float
-
-
-def settings_for(log: Log, calibration: Calibration | None = None) -> Settings:
-    """The course's settings for a log with range and bearing, or with ranges only."""
-    fitted = calibration or Calibration()
-    if log.z[log.first_measured()].shape[0] == 3:
-        if calibration is None:
-            drift, (sigma_r, sigma_phi) = Drift((0.02, 0, 0), (0.05, 0.05, 0.001)), (0.45, 0.02)
-        else:
-            drift, (sigma_r, sigma_phi) = Drift((0.01, 0, 0), (0.01, 0.01, 3e-4)), (0.40, 0.0125)
-        sensor: Sensor = RangeBearing(
-            log.world, sigma_r, sigma_phi, nu=4, bias_phi=fitted.bearing_bias
-        )
-        return Settings(drift, sensor, (1000, 5000), (0.02, 0.02, 0.02), 0.5)
-    drift = Drift((0.005, 0, 0), (5e-5, 0.002, 0))
-    sensor = Range(log.world, 3.0, bias=fitted.range_bias, nu=4)
-    return Settings(drift, sensor, (2000, 20000), (0.2, 0.2, 0.02), 5.0)
-
-
-def calibrate_first(log: Log, seconds: float) -> Calibration:
-    """Calibrate on the first seconds of a log.
-
-    Raises
-    ------
-    ParameterError
-        If `seconds` is not positive.
-    DataError
-        If these seconds hold too little driving, measuring or truth.
-    """
-    if not seconds > 0:
-        raise ParameterError(f"seconds to calibrate on must be > 0, got {seconds}")
-    part = log[: int(np.searchsorted(log.t, log.t[0] + seconds))]
-    if len(part) == 0 or not any(zk.shape[1] for zk in part.z):
-        raise DataError(f"nothing is measured in the first {seconds:g} s; calibrate on more")
-    return calibrate(part)
+    t: Array
+    mass: Array
+    mean: Array
 
 
 class Track(NamedTuple):
@@ -124,32 +100,36 @@ class Track(NamedTuple):
     sd : array (T, B), metres: root of the summed position variances
     first : float, seconds, the time of the first measurement
     seconds : float, how long the filter took (all B together)
+    hypotheses : Hypotheses of the first seed
     """
 
     estimate: Array
     sd: Array
     first: float
     seconds: float
+    hypotheses: Hypotheses
 
 
 def localise(
     log: Log,
     rng: np.random.Generator,
-    start: str = "known",
+    start: str | ArrayLike = "known",
     M: int | None = None,
     batch: int = 1,
     settings: Settings | None = None,
     plain: bool = False,
     every_row: bool = False,
     watch: Watch | None = None,
+    recover: bool = False,
 ) -> Track:
     """Run the filter along a recorded log.
 
     Parameters
     ----------
-    log : Log with u = (v, omega, dt), already calibrated if it is to be
+    log : Log with a rig, already calibrated if it is to be
     rng : numpy.random.Generator
-    start : "known" (the truth before the first command) or "global" (anywhere on the map)
+    start : "known" (the truth before the first command), "global" (anywhere on the map), or (3,)
+        A pose is where the robot starts, to within the settings' `start_sd`.
     M : int, optional; particles, from the settings if left out
     batch : int, how many filters run side by side
     settings : Settings, optional; `settings_for` the log if left out
@@ -158,6 +138,9 @@ def localise(
     every_row : bool
         One prediction per step instead of one per measurement: to see that it is the same.
     watch : function (k, n), called after step k of n
+    recover : bool
+        Replace a share of the particles by new ones, anywhere on the map, whenever measurements
+        become less likely than they used to be (augmented MCL): for robots that are carried off.
 
     Returns
     -------
@@ -166,39 +149,88 @@ def localise(
     Raises
     ------
     ParameterError
-        If `start` is neither of the two, or M or `batch` is not a whole number >= 1.
+        If `start` is none of the three, or M or `batch` is not a whole number >= 1.
     DataError
         If nothing was measured, or a known start is asked of a log that does not know its own.
     """
     settings = settings or settings_for(log)
-    if start not in ("known", "global"):
-        raise ParameterError(f"start must be 'known' or 'global', got {start!r}")
-    M = settings.M[start == "global"] if M is None else require_count("particles M", M)
+    everywhere = isinstance(start, str) and start == "global"
+    M = settings.M[everywhere] if M is None else require_count("particles M", M)
     shape = (require_count("batch", batch), M)
-    if start == "known":
-        if log.start is None:
-            raise DataError("the log does not know where it starts; use a global start")
-        bel = gaussian_prior(shape, log.start, settings.start_sd, rng)
-    else:
-        bel = uniform_prior(shape, log.world, rng)
-    steps = np.arange(len(log)) if every_row else informative_steps(log)
-    short = preintegrate(log, settings.drift, steps)
-    first = float(log.t[log.first_measured()])
+    bel = (
+        uniform_prior(shape, log.world, rng)
+        if everywhere
+        else gaussian_prior(shape, _start(log, start), settings.start_sd, rng)
+    )
+    looked = thinned(log, settings.drift) if rig_of(log).sensor == "laser" else log
+    steps = np.arange(len(log)) if every_row else informative_steps(looked)
+    short = preintegrate(looked, settings.drift, steps)
+    first = float(log.t[looked.first_measured()])
     began = time.perf_counter()
-    sensor, staged = settings.sensor, np.inf
-    if start == "global" and not plain:
-        sensor, staged = _with_outliers(sensor, log.world), settings.limit
-    estimate, Sigma = _filter(short, bel, sensor, rng, staged, watch)
+    sensor, staged = settings.sensor, math.inf
+    if (everywhere or recover) and not plain:
+        sensor, staged = _with_outliers(log, sensor), settings.limit
+    estimate, Sigma, found = _filter(
+        short, bel, sensor, rng, staged, settings.limit, log.world if recover else None, watch
+    )
     seconds = time.perf_counter() - began
     estimate, sd = fill_in(log, settings.drift, np.append(0, steps + 1), estimate, Sigma)
-    return Track(estimate, sd, first, seconds)
+    return Track(estimate, sd, first, seconds, found)
 
 
-def _with_outliers(sensor: Sensor, world: LandmarkMap) -> Sensor:
+def _start(log: Log, start: str | ArrayLike) -> Array:
+    """The pose that a start which is not global means."""
+    if not isinstance(start, str):
+        return require_components("start", start, 3)
+    if start != "known":
+        raise ParameterError(f"start must be 'known', 'global' or a pose (3,), got {start!r}")
+    if log.start is None:
+        raise DataError(
+            "the log does not know where it starts; use a global start, or name a pose "
+            "(--start global, --pose x,y,theta)"
+        )
+    return log.start
+
+
+def thinned(log: Log, drift: Drift) -> Log:
+    """A laser's log with scans only where the robot has moved, and few beams in each.
+
+    Beams that met nothing are dropped before the others are thinned, so that a scan with few good
+    ones keeps them all.
+
+    Parameters
+    ----------
+    log : Log of a laser
+    drift : Drift
+    """
+    path, r_max = Preintegrated.of(log, drift).path[:, 1:], rig_of(log).r_max
+    z, last = [], None
+    for k, zk in enumerate(log.z):
+        good = (zk[0] > 0) & (zk[0] < r_max)
+        if good.any() and (last is None or _moved(path[:, last], path[:, k])):
+            kept = np.flatnonzero(good)
+            if kept.size > BEAMS:
+                kept = kept[np.linspace(0, kept.size - 1, BEAMS).round().astype(np.int64)]
+            z.append(zk[:, kept])
+            last = k
+        else:
+            z.append(zk[:, :0])
+    return replace(log, z=z, outlier=None)
+
+
+def _moved(before: Array, now: Array) -> bool:
+    x, y, theta = now - before
+    return bool(math.hypot(x, y) > SPACING or abs(math.remainder(theta, 2 * math.pi)) > SPACING)
+
+
+def _with_outliers(log: Log, sensor: Sensor) -> Sensor:
     """The sensor, but a share of its measurements comes from anywhere on the map."""
-    x0, x1, y0, y1 = world.bounds
-    farthest = np.hypot(x1 - x0, y1 - y0)
-    circle = 2 * np.pi if sensor.components == 3 else 1.0  # range alone has no bearing
+    rig = rig_of(log)
+    if rig.sensor == "laser":
+        return sensor  # its model has a share of unexplained readings
+    x0, x1, y0, y1 = log.world.bounds
+    farthest = np.hypot(x1 - x0, y1 - y0) if "range" in rig.rows else 1.0
+    circle = 2 * np.pi if "bearing" in rig.rows else 1.0
     return OutlierMixture(sensor, OUTLIER_SHARE, 1 / (circle * farthest))
 
 
@@ -208,22 +240,38 @@ def _filter(
     sensor: Sensor,
     rng: np.random.Generator,
     staged: float,
+    limit: float,
+    world: object | None,
     watch: Watch | None,
-) -> tuple[Array, Array]:
-    """Answers (3, T + 1, B) and covariances (3, 3, T + 1, B), from before the first step on."""
-    motion = ComposedMotion()
+) -> tuple[Array, Array, Hypotheses]:
+    """Answers (3, T + 1, B), covariances (3, 3, T + 1, B), from before the first step on."""
+    motion, memory = ComposedMotion(), Memory()
     answers, spreads = [mean_pose(bel)], [covariance(bel)]
-    for k, (_, u, z, _) in enumerate(log):
+    found: list[tuple[float, float, Array]] = []
+    pause = max(1, len(log) // LOOKS)
+    for k, (t, u, z, _) in enumerate(log):
         bel = predict(bel, u, motion, rng)
         if z.shape[1]:
+            if world is not None:
+                memory = memory.remember(update(bel, z, sensor)[1], z.shape[1])
             bel = _weigh(bel, z, sensor, rng, staged)
         answers.append(mean_pose(bel))
         spreads.append(covariance(bel))
+        if (k + 1) % pause == 0 or k + 1 == len(log):
+            found += _heaps(t, bel, spreads[-1], limit)
         if z.shape[1]:
-            bel = resample(bel, systematic, rng, where=bel.ess < 0.5 * bel.M)
+            share = memory.share * np.ones(bel.log_w.shape[:-1])
+            bel = resample(bel, systematic, rng, where=(bel.ess < 0.5 * bel.M) | (share > 0))
+            if world is not None:
+                bel, _ = inject(bel, share, world.sample_poses, rng)  # type: ignore[attr-defined]
         if watch is not None:
             watch(k + 1, len(log))
-    return np.stack(answers, axis=1), np.stack(spreads, axis=2)
+    heaps = Hypotheses(
+        np.array([t for t, _, _ in found]),
+        np.array([mass for _, mass, _ in found]),
+        np.array([mean for _, _, mean in found]).reshape(-1, 3).T,
+    )
+    return np.stack(answers, axis=1), np.stack(spreads, axis=2), heaps
 
 
 def _weigh(
@@ -237,8 +285,25 @@ def _weigh(
     return tempered_update(bel, z, sensor, rng, np.where(lost, 0.5, 0.0))[0]
 
 
+def _heaps(
+    t: float, bel: Particles, Sigma: Array, limit: float
+) -> list[tuple[float, float, Array]]:
+    """The hypotheses of the first filter, if there is more than one."""
+    if Sigma[0, 0, 0] + Sigma[1, 1, 0] < limit**2 / 4:
+        return []
+    first = Particles.trusted(bel.state[:, 0], bel.log_w[0])
+    heaps = clusters(first, (2 * limit, 2 * limit, math.pi / 4))
+    heavy = heaps.mass >= LEAST_MASS
+    if heavy.sum() < 2:
+        return []
+    return [(t, float(m), x) for m, x in zip(heaps.mass[heavy], heaps.mean.T[heavy], strict=True)]
+
+
 class Score(NamedTuple):
-    """Errors at the scored steps: metres and radians, one number per seed (B,)."""
+    """Errors at the scored steps: metres and radians, one number per seed (B,).
+
+    The heading's is NaN where the truth has none.
+    """
 
     rmse: Array
     median: Array
@@ -251,7 +316,7 @@ def scored_steps(log: Log, since: float = -np.inf) -> NDArray[np.bool_]:
     """Steps (T,) at which errors count: odometry stamps with a known truth, from `since` on."""
     if log.truth is None:
         return np.zeros(len(log), dtype=bool)
-    known = np.isfinite(log.truth).all(axis=0) & (log.t >= since)
+    known = np.isfinite(log.truth[:2]).all(axis=0) & (log.t >= since)
     return known if log.scored is None else known & log.scored
 
 
@@ -280,10 +345,14 @@ def score(log: Log, estimate: Array, limit: float, since: float = -np.inf) -> Sc
     error = pose_error(estimate[:, known], log.truth[:, known])
     distance = np.hypot(error[0], error[1])
     late = log.t[known] >= since
+    looks = late & np.isfinite(log.truth[2, known])
+    heading = np.full(distance.shape[1:], np.nan)
+    if looks.any():
+        heading = np.sqrt(np.mean(error[2][looks] ** 2, axis=0))
     return Score(
         np.sqrt(np.mean(distance[late] ** 2, axis=0)),
         np.median(distance[late], axis=0),
         np.percentile(distance[late], 95, axis=0),
-        np.sqrt(np.mean(error[2][late] ** 2, axis=0)),
+        heading,
         np.asarray(settling_time(log.t[known], distance, limit)),
     )

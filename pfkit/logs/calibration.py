@@ -21,8 +21,10 @@ taken from another log is worse than none.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from itertools import combinations
 
 import numpy as np
 from numpy.typing import NDArray
@@ -31,12 +33,18 @@ from pfkit.errors import DataError, require_finite
 from pfkit.geometry import between, wrap
 from pfkit.logs.odometry import Drift, Preintegrated
 from pfkit.worlds.log import Log
+from pfkit.worlds.rig import Rig
 
 Array = NDArray[np.float64]
 WINDOW = 4.0  # seconds: long enough to see a scale error above the truth's own noise
 STRIDE = 0.5  # seconds between the starts of two windows
 ARM = 0.5  # metres per radian: what a heading error counts beside a position error
 NU = 4.0
+USUAL_DRIFT = Drift((0.02, 0, 0), (0.05, 0.05, 0.001))  # of commands that nobody calibrated
+LEAST_DRIFT = 0.002  # m^2 per metre: wheels that seem perfect on one part are not on the next
+FEWEST = 20  # errors of which a spread is taken
+SOON = 2.0  # seconds within which two errors count as consecutive
+MOST_ALIKE = 0.9  # the largest correlation that is believed: a factor of 4.4
 
 
 @dataclass(frozen=True)
@@ -51,6 +59,11 @@ class Calibration:
         The robot moves that much later than the odometry says.
     bearing_bias : float, radians, measured minus true
     range_bias : array (L,) or float, metres, measured minus true, by landmark
+    mount : (x, y, yaw) of the sensor on the robot, metres and radians, if fitted
+    sigma : (float, float), metres and radians
+        Spread that is left of ranges and bearings, widened for errors that repeat; None: unknown.
+    drift : Drift, optional
+        What is left of the odometry's errors.
     """
 
     speed: float = 1.0
@@ -58,6 +71,9 @@ class Calibration:
     delay: float = 0.0
     bearing_bias: float = 0.0
     range_bias: float | Array = 0.0
+    mount: tuple[float, float, float] | None = None
+    sigma: tuple[float | None, float | None] = (None, None)
+    drift: Drift | None = None
 
     def __post_init__(self) -> None:
         for name in ("speed", "turn", "delay", "bearing_bias", "range_bias"):
@@ -97,6 +113,10 @@ def fit_odometry(log: Log) -> Calibration:
         If there is no truth, or the robot hardly moved in it.
     """
     i, j = _windows(log)
+    looks = np.isfinite(log.truth[2, i] + log.truth[2, j])  # type: ignore[index]
+    if not looks.any():
+        raise DataError("the truth has no headings; speed and turn cannot be fitted to it")
+    i, j = i[looks], j[looks]
     truth = between(log.truth[:, i], log.truth[:, j])  # type: ignore[index]
 
     def error(parameters: Array) -> Array:
@@ -164,9 +184,95 @@ def calibrate(log: Log) -> Calibration:
     ParameterError, DataError
         If `log` is not a log, or has no truth to compare with.
     """
-    if log.z[log.first_measured()].shape[0] == 3:
-        return replace(fit_odometry(log), bearing_bias=fit_bearing_bias(log))
-    return Calibration(range_bias=fit_range_bias(log))
+    log.first_measured()
+    rig = log.rig or Rig("range-bearing")
+    if rig.sensor == "range":
+        found = Calibration(range_bias=fit_range_bias(log))
+    else:
+        found = replace(fit_odometry(log), bearing_bias=fit_bearing_bias(log))
+    return replace(found, sigma=_sigmas(log, found), drift=fit_drift(found.apply(log)))
+
+
+def fit_drift(log: Log) -> Drift:
+    r"""Twice the variance of the odometry's errors over a window.
+
+    .. math:: e_d^2 \approx D_1 |d|, \qquad
+              e_\theta^2 \approx D_4 |d| + D_5 |\phi| + D_6\, \Delta t
+
+    A truth of positions only shows the first; the turn's errors are then as much smaller than
+    usual as the drive's.
+    """
+    i, j = _windows(log)
+    truth = between(log.truth[:, i], log.truth[:, j])  # type: ignore[index]
+    way = np.hypot(*(log.truth[:2, j] - log.truth[:2, i]))  # type: ignore[index]
+    steps = Preintegrated.of(log, Drift())
+    motion, _ = steps.between(i + 1, j + 1)
+    amounts = steps.amounts[:, j + 1] - steps.amounts[:, i + 1]
+    looks = np.isfinite(truth[2]).all()
+    agree = np.hypot(*(truth - motion)[:2]) < way + 0.1 if looks else way > 0
+    along, amounts = (way - np.hypot(*motion[:2]))[agree], amounts[:, agree]
+    D1 = max(2 * float(np.sum(_clipped(along) ** 2) / amounts[0].sum()), LEAST_DRIFT)
+    if not looks:
+        share = D1 / USUAL_DRIFT.drive[0]
+        D4, D5, D6 = (share * rate for rate in USUAL_DRIFT.turn)
+        return Drift((D1, 0.0, 0.0), (D4, D5, D6))
+    D4, D5, D6 = 2 * _non_negative_fit(amounts.T, _clipped(wrap((truth - motion)[2, agree])) ** 2)
+    return Drift((D1, 0.0, 0.0), (float(D4), float(D5), float(D6)))
+
+
+def _clipped(values: Array) -> Array:
+    """Errors, those beyond three times the usual size cut to that."""
+    scale = 3 * 1.4826 * float(np.median(np.abs(values)))
+    return np.clip(values, -scale, scale)
+
+
+def _non_negative_fit(A: Array, b: Array) -> Array:
+    """Least squares with coefficients >= 0: of all choices of columns the best that has them."""
+    best, least = np.zeros(A.shape[1]), np.inf
+    for n in range(1, A.shape[1] + 1):
+        for columns in combinations(range(A.shape[1]), n):
+            part = np.linalg.lstsq(A[:, columns], b, rcond=None)[0]
+            misfit = float(np.sum((A[:, columns] @ part - b) ** 2))
+            if (part >= 0).all() and misfit < least:
+                best, least = np.zeros(A.shape[1]), misfit
+                best[list(columns)] = part
+    return best
+
+
+def _sigmas(log: Log, found: Calibration) -> tuple[float | None, float | None]:
+    """Spread of ranges and of bearings that the calibration leaves, for landmarks with names."""
+    rig = log.rig or Rig("range-bearing")
+    if "landmark" not in rig.rows:
+        return None, None
+    k, z = _measured(log)
+    mx, my = log.world.locate(z[-1])
+    x, y, theta = log.truth[:, k]  # type: ignore[index]
+    left: dict[str, Array] = {}
+    if "range" in rig.rows:
+        bias = np.broadcast_to(found.range_bias, len(log.world))[log.world.index(z[-1])]
+        left["range"] = z[0] - bias - np.hypot(mx - x, my - y)
+    if "bearing" in rig.rows:
+        phi = z[rig.rows.index("bearing")]
+        left["bearing"] = wrap(phi - found.bearing_bias - np.arctan2(my - y, mx - x) + theta)
+    widths = {name: _width(error, z[-1], log.t[k]) for name, error in left.items()}
+    return widths.get("range"), widths.get("bearing")
+
+
+def _width(error: Array, names: Array, t: Array) -> float | None:
+    r"""Robust spread times :math:`\\sqrt{(1 + \\rho)/(1 - \\rho)}`, rho of errors in a row."""
+    known = np.isfinite(error)
+    error, names, t = error[known], names[known], t[known]
+    if error.size < FEWEST:
+        return None
+    order = np.lexsort((t, names))
+    clipped, names, t = _clipped(error - np.median(error))[order], names[order], t[order]
+    row = (np.diff(names) == 0) & (np.diff(t) < SOON)
+    rho = 0.0
+    if row.any():
+        rho = float(np.mean((clipped[1:] * clipped[:-1])[row]) / np.mean(clipped**2))
+    rho = float(np.clip(rho, 0.0, MOST_ALIKE))
+    spread = 1.4826 * float(np.median(np.abs(error - np.median(error))))
+    return spread * math.sqrt((1 + rho) / (1 - rho)) or None
 
 
 def _corrected(log: Log, speed: float, turn: float, delay: float) -> Array:
@@ -189,7 +295,7 @@ def _windows(log: Log) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
         raise DataError("calibration compares with the truth, and this log has none")
     t0 = np.arange(log.t[0], log.t[-1] - WINDOW, STRIDE)
     i, j = np.searchsorted(log.t, t0), np.searchsorted(log.t, t0 + WINDOW)
-    good = np.isfinite(log.truth[:, i] + log.truth[:, j]).all(axis=0)
+    good = np.isfinite(log.truth[:2, i] + log.truth[:2, j]).all(axis=0)
     i, j = i[good], j[good]
     way = np.hypot(*(log.truth[:2, j] - log.truth[:2, i])) if i.size else np.zeros(0)
     if way.sum() * STRIDE / WINDOW < 1.0:

@@ -35,6 +35,14 @@ def face_course(log: Log) -> Log:
     """The log with a truth that looks where it goes, and a note of what was done.
 
     A truth of positions only gets the heading of the start, fitted to the first third.
+
+    Parameters
+    ----------
+    log : Log
+
+    Returns
+    -------
+    Log
     """
     if log.truth is None or len(log) < 3:
         return log
@@ -112,7 +120,7 @@ def _with_fitted_start(log: Log) -> Log:
     """
     known = np.isfinite(log.truth[:2]).all(axis=0)  # type: ignore[index]
     part = known & (log.t <= log.t[0] + (log.t[-1] - log.t[0]) / 3)
-    if not known[0] or part.sum() < 2:
+    if not bool(known.flat[0]) or part.sum() < 2:
         return log
     path = Preintegrated.of(log, Drift()).path[:, 1:]
     p = (log.truth[0] + 1j * log.truth[1])[part]  # type: ignore[index]

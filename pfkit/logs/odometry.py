@@ -156,6 +156,7 @@ class Preintegrated:
     Attributes
     ----------
     path : array (3, T + 1), dead reckoning from the origin; column k + 1 is the end of step k
+    amounts : array (3, T + 1), metres, radians and seconds by then
     """
 
     def __init__(
@@ -170,6 +171,7 @@ class Preintegrated:
         middle = (position[:, :-1] + position[:, 1:]) / 2
         a, q = drift.grown(way, turn, dt)
         self.path = np.vstack((position, wrap(heading)))
+        self.amounts = _running_sum(np.stack((np.abs(way), np.abs(turn), dt)))
         self._a = _running_sum(a * c[:, None] * c)
         self._q = _running_sum(q)
         self._qm = _running_sum(q * middle)

@@ -1,8 +1,8 @@
 r"""A sensor that does not sit where the robot is.
 
 A robot's pose is that of a point between its wheels. A laser sits ahead of it, a camera is turned a
-little, a scanner hangs upside down under a shelf. The sensor's own pose is the robot's, and then the
-mounting,
+little, a scanner hangs upside down under a shelf. The sensor's own pose is the robot's, and then
+the mounting,
 
 .. math:: x_{sensor} = x \oplus m, \qquad p(z \mid x) = p_{sensor}(z \mid x \oplus m) .
 

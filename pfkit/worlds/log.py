@@ -147,7 +147,7 @@ class Log:
             yield Step(float(self.t[k]), self.u[:, k], self.z[k], truth)
 
     def __getitem__(self, part: slice) -> Log:
-        """A stretch of the log, e.g. ``log[:500]``; its start is the truth just before it, if known."""
+        """A stretch of the log, e.g. ``log[:500]``; its start is the truth before it, if known."""
         if not isinstance(part, slice) or part.step not in (None, 1):
             raise DataError(f"a log is cut by slices of step 1, got {part!r}; iterate for steps")
         first, _, _ = part.indices(len(self.t))

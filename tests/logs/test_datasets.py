@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 import pfkit as pf
-from pfkit.logs.datasets import find_folder, load_log, load_mrclam, load_plaza
+from pfkit.logs.datasets import LAYOUTS, find_folder, load_log, load_mrclam, load_plaza
 from pfkit.logs.datasets.text import in_order, read_table
 from pfkit.logs.datasets.timeline import held_controls, interpolate_poses
 
@@ -307,9 +307,12 @@ def test_a_missing_folder_says_where_to_get_one(monkeypatch):
         find_folder("no_such_log")
 
 
-def test_a_folder_without_a_log_is_refused(tmp_path):
-    with pytest.raises(pf.DataError, match="neither"):
+def test_a_folder_of_no_known_layout_is_answered_with_what_there_is_and_what_is_missing(tmp_path):
+    (tmp_path / "wheels.csv").write_text("t,v\n0,1\n")
+    with pytest.raises(pf.DataError, match=r"There is wheels\.csv\.") as caught:
         load_log(tmp_path)
+    for layout in LAYOUTS.values():
+        assert layout.needs in str(caught.value)
 
 
 @pytest.mark.parametrize("T", [1, 2, 1000])

@@ -55,7 +55,7 @@ def test_positions_only_give_a_start_whose_heading_is_fitted(log):
     np.testing.assert_array_equal(found.start[:2], log.truth[:2, 0])
     best = pf.rmse(pf.dead_reckoning(found)[:2, :1300], log.truth[:2, :1300])
     for angle in (-0.3, 0.3):
-        other = pf.dead_reckoning(found, start=found.start + [0, 0, angle])
+        other = pf.dead_reckoning(found, start=found.start + np.array((0, 0, angle)))
         assert best < pf.rmse(other[:2, :1300], log.truth[:2, :1300])
 
 

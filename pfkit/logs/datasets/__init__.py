@@ -1,24 +1,31 @@
-"""Real logs, read into `Log`: MRCLAM (range and bearing) and Plaza 2 (range only).
+"""Real logs, read into `Log`: one table of layouts, one reader for each.
 
 A folder is looked for in three places: the argument itself, then the environment variable
-``PFKIT_DATA`` (a log folder, or a folder of log folders), then the course's ``data/``.
+``PFKIT_DATA`` (a log folder, or a folder of log folders), then the course's ``data/``. Its layout
+is recognised by the names, or the first words, of its files; a folder of no known layout is
+answered with what was found in it and with what each layout would need.
 
-Controls are u = (v, omega, dt) for `VelocityMotion`. Time starts at 0; the steps are the
-instants of the odometry *and* of the measurements, and ``log.scored`` marks the former. Where
-the truth is unknown it is NaN.
+A log states its `Rig`. Time starts at 0; the steps are the instants of the odometry *and* of the
+measurements, and ``log.scored`` marks the former. Where the truth is unknown it is NaN. What a
+reader mended or decided stands in ``log.notes``.
 """
 
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
+from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import NamedTuple
 
 from pfkit.errors import DataError, as_path
+from pfkit.logs.datasets.labyrinth import is_labyrinth, read_labyrinth
 from pfkit.logs.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
 from pfkit.logs.datasets.plaza import is_plaza, read_plaza
+from pfkit.logs.logfile import is_saved, read_log
 from pfkit.worlds.log import Log
 
-__all__ = ["find_folder", "load_log", "load_mrclam", "load_plaza"]
+__all__ = ["LAYOUTS", "Wanted", "find_folder", "load_log", "load_mrclam", "load_plaza"]
 
 WHERE = (
     "get MRCLAM from asrl.utias.utoronto.ca/datasets/mrclam, unpack one MRCLAM_DatasetN, and "
@@ -26,7 +33,67 @@ WHERE = (
 )
 
 
-def find_folder(name: str | Path | None, is_layout=None) -> Path:
+@dataclass(frozen=True)
+class Wanted:
+    """What the caller says about a folder; see `load_log`."""
+
+    robot: int | None = None
+    drop_unknown: bool = False
+    need_truth: bool = True
+    map: Path | None = None
+    odometry: str | None = None
+    scan: str | None = None
+    truth: str | None = None
+
+
+class Layout(NamedTuple):
+    """A way in which people lay out a log.
+
+    Attributes
+    ----------
+    fits : function (folder) -> bool
+    read : function (folder, Wanted) -> Log
+    needs : str, the files of it
+    """
+
+    fits: Callable[[Path], bool]
+    read: Callable[[Path, Wanted], Log]
+    needs: str
+
+
+def _saved(folder: Path, wanted: Wanted) -> Log:
+    log = read_log(folder)
+    if wanted.need_truth and log.start is None:
+        raise DataError(
+            f"{folder / 'start.txt'}: no such file; a known start needs it. Without one, use "
+            "--start global or --pose"
+        )
+    return replace(log, source=log.source or f"saved, {folder.name}")
+
+
+def _mrclam(folder: Path, wanted: Wanted) -> Log:
+    files = mrclam_files(folder, wanted.robot)
+    source = f"MRCLAM, {folder.name}"
+    return read_mrclam(files, source, wanted.drop_unknown, wanted.need_truth)
+
+
+def _plaza(folder: Path, wanted: Wanted) -> Log:
+    return read_plaza(folder, f"Plaza, {folder.name}", wanted.need_truth)
+
+
+def _labyrinth(folder: Path, wanted: Wanted) -> Log:
+    return read_labyrinth(folder, f"Labyrinth, {folder.name}", wanted.need_truth)
+
+
+LAYOUTS = {
+    "saved": Layout(is_saved, _saved, "steps.txt and measurements.txt, as save_log writes them"),
+    "MRCLAM": Layout(is_mrclam, _mrclam, "*_Odometry.dat, *_Measurement.dat, *Barcodes.dat"),
+    "Plaza": Layout(is_plaza, _plaza, "odometry.txt, ranges.txt and beacons.txt"),
+    "Labyrinth": Layout(is_labyrinth, _labyrinth, "*.txt with lines range2 and odom2diff"),
+}
+
+
+def find_folder(name: str | Path | None, is_layout: Callable[[Path], bool] | None = None) -> Path:
     """Find a log folder: the path itself, then ``PFKIT_DATA``, then the course's ``data/``.
 
     Parameters
@@ -40,7 +107,7 @@ def find_folder(name: str | Path | None, is_layout=None) -> Path:
     DataError
         If there is none; says where to get a log and how to lay it out.
     """
-    fits = is_layout or (lambda folder: is_mrclam(folder) or is_plaza(folder))
+    fits = is_layout or (lambda folder: any(layout.fits(folder) for layout in LAYOUTS.values()))
     if name is not None and as_path("folder", name).exists():
         return Path(name)
     data = Path(__file__).parents[3] / "data"
@@ -83,11 +150,8 @@ def load_mrclam(
     DataError
         One line with file, line and reason.
     """
-    found = find_folder(folder, is_mrclam)
-    if not found.is_dir():
-        raise DataError(f"{found}: not a folder; name the folder that holds the log")
-    files = mrclam_files(found, robot)
-    return read_mrclam(files, f"MRCLAM, {found.name}", drop_unknown, need_truth)
+    found = _folder(find_folder(folder, is_mrclam))
+    return _mrclam(found, Wanted(robot, drop_unknown, need_truth))
 
 
 def load_plaza(folder: str | Path | None = None, need_truth: bool = True) -> Log:
@@ -109,10 +173,7 @@ def load_plaza(folder: str | Path | None = None, need_truth: bool = True) -> Log
     DataError
         One line with file, line and reason.
     """
-    found = find_folder(folder, is_plaza)
-    if not found.is_dir():
-        raise DataError(f"{found}: not a folder; name the folder that holds the log")
-    return read_plaza(found, f"Plaza, {found.name}", need_truth)
+    return _plaza(_folder(find_folder(folder, is_plaza)), Wanted(need_truth=need_truth))
 
 
 def load_log(
@@ -120,8 +181,13 @@ def load_log(
     robot: int | None = None,
     drop_unknown: bool = False,
     need_truth: bool = True,
+    *,
+    map: str | Path | None = None,
+    odometry: str | None = None,
+    scan: str | None = None,
+    truth: str | None = None,
 ) -> Log:
-    """Load a log of either layout, recognised by its file names.
+    """Load a log of any layout that is known, recognised by its files.
 
     Parameters
     ----------
@@ -130,9 +196,13 @@ def load_log(
     robot : int, optional
         Which robot of a folder with several; the only one if left out.
     drop_unknown : bool
-        Leave out measurements of bar codes that the map does not know, instead of an error.
+        Leave out measurements of landmarks that the map does not know, instead of an error.
     need_truth : bool
         As in `load_mrclam`.
+    map : path, optional
+        The YAML file of a laser's map, if it is not the only one in the folder.
+    odometry, scan, truth : str, optional
+        Topics of a bag that holds several, or a truth.
 
     Returns
     -------
@@ -144,10 +214,33 @@ def load_log(
         If the folder holds no log that can be read; the message names file, line and reason.
     """
     found = find_folder(folder)
-    if is_plaza(found):
-        return load_plaza(found, need_truth)
-    if is_mrclam(found):
-        return load_mrclam(found, robot, drop_unknown, need_truth)
-    raise DataError(
-        f"{found}: neither *_Odometry.dat (MRCLAM) nor ranges.txt (Plaza) in it; {WHERE}"
+    wanted = Wanted(
+        robot,
+        drop_unknown,
+        need_truth,
+        None if map is None else as_path("map", map),
+        odometry,
+        scan,
+        truth,
+    )
+    for layout in LAYOUTS.values():
+        if layout.fits(found):
+            return layout.read(found, wanted)
+    raise DataError(_unknown(_folder(found)))
+
+
+def _folder(found: Path) -> Path:
+    if not found.is_dir():
+        raise DataError(f"{found}: not a folder; name the folder that holds the log")
+    return found
+
+
+def _unknown(folder: Path) -> str:
+    """What to say of a folder of no known layout: what is there, and what each would need."""
+    names = sorted(p.name for p in folder.iterdir())
+    there = ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+    needs = "; ".join(f"{name}: {layout.needs}" for name, layout in LAYOUTS.items())
+    return (
+        f"{folder}: no log of a known layout in it. There is {there or 'nothing'}. "
+        f"Known are {needs}"
     )

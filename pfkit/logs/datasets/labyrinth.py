@@ -142,7 +142,9 @@ def _commands(
     if best == (1.0, 1.0):
         return command, []
     found = ["the wheel columns are exchanged"] if sign < 0 else []
-    found += [f"the wheels stand {scale:g} times as far apart as the file says"] if scale != 1 else []
+    found += (
+        [f"the wheels stand {scale:g} times as far apart as the file says"] if scale != 1 else []
+    )
     by = "the truth" if truth is not None else "the ranges"
     return command, [
         f"{' and '.join(found)}: such a path fits {by} to {misfit[best]:.2f} m, "

@@ -95,7 +95,9 @@ def in_order(path: Path, table: Array, names: Array | None = None) -> tuple[Arra
         refuse(path, np.arange(table.shape[1]) == back, table[0], _jump(table[0], back))
     order = np.argsort(table[0], kind="stable")
     moved = int((np.maximum.accumulate(table[0]) > table[0]).sum())
-    notes = [f"{path.name}: {moved} rows were out of order and were sorted by time"] if moved else []
+    notes = (
+        [f"{path.name}: {moved} rows were out of order and were sorted by time"] if moved else []
+    )
     return table[:, order], notes
 
 
