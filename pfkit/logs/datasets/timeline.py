@@ -139,7 +139,8 @@ def _clocks(
         raise DataError(
             f"{source}: the clocks do not agree: odometry runs from {t[0]:.10g} to "
             f"{t[-1]:.10g} s, measurements from {t_z[0]:.10g} to {t_z[-1]:.10g} s, "
-            f"{t_z[0] - t[0]:+.10g} s apart at the start; shift one clock by what is known (a time zone is a multiple of 3600 s)"
+            f"{t_z[0] - t[0]:+.10g} s apart at the start; shift one clock by what "
+            "is known (a time zone is a multiple of 3600 s)"
         )
     notes = []
     out = int((~inside).sum())
