@@ -17,7 +17,7 @@ import sys
 import time
 from pathlib import Path
 
-import assets
+import npm_packages
 from environment import ROOT, SCRIPTS, Stop, say
 
 HTML = ROOT / "_build" / "html"
@@ -48,7 +48,7 @@ def build_live_parts() -> None:
 def build() -> None:
     """Build the book unless the last good build was made from the same files."""
     stamp = ROOT / ".cache" / "book.stamp"
-    assets.prepare()
+    npm_packages.fetched()
     build_live_parts()
     made_from = fingerprint()
     if HTML.exists() and stamp.exists() and stamp.read_text() == made_from:

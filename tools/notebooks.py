@@ -196,7 +196,7 @@ def stderr_of(cell: dict) -> str:
 
 
 def faults(notebook: dict) -> list[str]:
-    """List what a reader would miss: alt text, a title, unique cell ids, working outputs."""
+    """List what a reader would miss: alt text, caption, title, unique cell ids, working outputs."""
     found = []
     ids = [cell.get("id", "") for cell in notebook["cells"]]
     if len(set(ids)) != len(ids) or "" in ids:
@@ -209,6 +209,9 @@ def faults(notebook: dict) -> list[str]:
         alt = cell["metadata"].get("mystnb", {}).get("image", {}).get("alt", "")
         if kinds & {"image/png", "image/svg+xml"} and len(alt) < SHORTEST_ALT:
             found.append(f"cell {cell.get('id')}: no alt text (metadata mystnb.image.alt)")
+        caption = cell["metadata"].get("mystnb", {}).get("figure", {}).get("caption", "")
+        if kinds & {"image/png", "image/svg+xml"} and not caption.strip():
+            found.append(f"cell {cell.get('id')}: no caption (metadata mystnb.figure.caption)")
         if "application/vnd.jupyter.widget-view+json" in kinds:
             found.append(f"cell {cell.get('id')}: a stored widget is dead in the page")
         if any(output["output_type"] == "error" for output in cell["outputs"]):

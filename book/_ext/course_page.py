@@ -25,6 +25,11 @@ logger = logging.getLogger(__name__)
 NO_SUMMARY_ON_DISK = (
     'if (location.protocol === "file:") DOCUMENTATION_OPTIONS.SHOW_SEARCH_SUMMARY = false;'
 )
+NO_SCRIPT = (
+    '<noscript><p class="no-script">This page is whole without JavaScript: text, formulas, code '
+    "and pictures. Not here without it: search, explorables that move, and answers that are "
+    "checked.</p></noscript>"
+)
 FORWARD = """<!DOCTYPE html>
 <html lang="en">
 <head>
@@ -36,6 +41,16 @@ FORWARD = """<!DOCTYPE html>
 <body><main><h1>{title}</h1><p><a href="{target}">Open the book</a></p></main></body>
 </html>
 """
+# Scripts that wait for the document anyway, or for a key.
+LATER = (
+    "(?:doctools|sphinx_highlight|clipboard|copybutton|togglebutton|design-tabs"
+    "|scripts/sphinx-book-theme|searchtools|language_data|searchindex)"
+)
+# What every page but the search page loads of it; there the links stand between.
+SEARCHING = (
+    r'(?:\s*<script src="[^"]*(?:searchtools|language_data|searchindex)\.js"></script>){3}'
+    r"(?=\s*</head>)"
+)
 
 
 class Mend(NamedTuple):
@@ -68,6 +83,13 @@ MENDS = (
         expected=False,
     ),
     Mend(re.compile(r'="Color mode"'), '="Colour mode"'),
+    Mend(re.compile(r'(<article class="bd-article"[^>]*>)'), rf"\1\n{NO_SCRIPT}", expected=False),
+    # What makes text wait: a script that draws icons (icons.py shows them by style), scripts that
+    # can run after the text, a search index that only the search page reads.
+    Mend(re.compile(r'<script defer src="[^"]*/fontawesome\.js[^>]*></script>\n?'), ""),
+    Mend(re.compile(r'<link rel="preload" as="script"[^>]*>\n?'), ""),
+    Mend(re.compile(SEARCHING), "", expected=False),
+    Mend(re.compile(rf'<script (?=[^>]*src="(?:[^"]*/)?{LATER}\.)'), "<script defer "),
     Mend(
         re.compile(r'(<table class="[^"]*\bdocutils\b.*?</table>)', re.S),
         r'<div class="wide-table" tabindex="0" role="region" aria-label="Table">\1</div>',

@@ -7,6 +7,7 @@ that are broken on purpose (test_page_checks.py) as well as on the book (test_pa
 from __future__ import annotations
 
 import functools
+import gzip
 import http.server
 import os
 import shutil
@@ -30,6 +31,8 @@ SETTLE = 400  # ms: the theme waits before it reacts to a new width
 PATIENCE = 120_000  # ms: a busy machine is slow, not wrong
 LARGEST_PAGE = 400_000  # bytes beyond what all pages share
 SHARED = ("/_static/", "/live/", "/searchindex.js")  # what all pages, or all that compute, load
+LARGEST_VISIT = 900_000  # bytes of a first visit before any click, as hosts serve them
+PACKED = (".html", ".js", ".css", ".svg", ".json")  # what hosts send with gzip
 FORWARDS = 'http-equiv="refresh"'
 NAMES = ("chromium", "chromium-browser", "google-chrome", "chrome")
 
@@ -42,8 +45,10 @@ NO_ALT = r"""[...document.querySelectorAll('img, svg[role=img]:not([aria-hidden]
   const bare = /^(\.\.|_images|[0-9a-f]{16,}|\S+\.(png|svg|jpg)$)/;
   return !silent && (!(alt || '').trim() || bare.test(alt));
 }).map(i => i.outerHTML.slice(0, 120))"""
-TYPESET = "() => window.MathJax?.startup?.promise?.then(() => 0)"
-MATH_ERRORS = "[...document.querySelectorAll('mjx-merror')].map(e => e.textContent.slice(0, 80))"
+# Formulas are typeset when the book is built: no source of one may stand in a page.
+MATH_ERRORS = r"""[...document.querySelectorAll('mjx-merror, .math')]
+  .filter(e => e.matches('mjx-merror') || !e.querySelector('mjx-container'))
+  .map(e => e.textContent.slice(0, 80))"""
 # A colour on its way from one theme to the other has no contrast to judge.
 SETTLED = """() => Promise.all(document.getAnimations()
   .filter(a => Number.isFinite(a.effect?.getComputedTiming().endTime))
@@ -99,6 +104,7 @@ class Visit:
     base: str
     complaints: list[str] = field(default_factory=list)
     own_bytes: int = 0
+    responses: list[Any] = field(default_factory=list)
 
     def listen(self, tab: Any) -> None:
         """Note errors, failures and requests that leave the book."""
@@ -114,8 +120,18 @@ class Visit:
     def _response(self, response: Any) -> None:
         if response.status >= 400:
             self.complaints.append(f"{response.status}: {response.url[-100:]}")
-        if response.url.startswith("http") and not any(part in response.url for part in SHARED):
-            self.own_bytes += int(response.headers.get("content-length") or 0)
+        if response.url.startswith("http"):
+            self.responses.append(response)
+            if not any(part in response.url for part in SHARED):
+                self.own_bytes += int(response.headers.get("content-length") or 0)
+
+    def weight(self) -> int:
+        """Bytes that came so far, those of text as gzip makes them."""
+        total = 0
+        for response in self.responses:
+            packed = response.url.split("?")[0].endswith(PACKED)
+            total += len(gzip.compress(response.body()) if packed else response.body())
+        return total
 
 
 def check_outline(tab: Any) -> list[str]:
@@ -129,7 +145,7 @@ def check_outline(tab: Any) -> list[str]:
 def check_content(tab: Any) -> list[str]:
     """Alt texts, mathematics, headings."""
     found = [f"no alt text: {image}" for image in tab.evaluate(NO_ALT)]
-    found += [f"mathematics does not parse: {text}" for text in tab.evaluate(MATH_ERRORS)]
+    found += [f"mathematics is not typeset: {text}" for text in tab.evaluate(MATH_ERRORS)]
     return found + check_outline(tab)
 
 
@@ -162,8 +178,9 @@ def look(
     visit.listen(tab)
     tab.set_viewport_size(WIDE)
     tab.goto(base + page, wait_until="load")
-    tab.evaluate(TYPESET)
     found = check_content(tab)
+    if visit.weight() > LARGEST_VISIT:
+        found.append(f"{visit.weight() // 1000} kB before any click, more than 900 kB")
     for size, which in ((WIDE, wide), (NARROW, narrow)):
         tab.set_viewport_size(size)
         at_this_width = check_width(tab)

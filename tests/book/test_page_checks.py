@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import random
+
 import browser
 import course_page
 import pytest
@@ -22,6 +24,7 @@ BROKEN = {
     "a script error": ("<p>Text", "<script>nothing.here()</script><p>Text"),
     "an outside request": ("<p>Text", '<img alt="A map of it." src="https://example.org/a.png">'),
     "a missing file": ("<p>Text", '<script src="gone.js"></script><p>Text'),
+    "a formula as its source": ("<p>Text", '<p><span class="math">\\(x_t\\)</span> Text'),
     "no language": ('<html lang="en">', "<html>"),
     "too little contrast": ("<p>Text", '<p style="color: #ccc; background: #fff">Text'),
 }
@@ -61,6 +64,17 @@ def test_colours_alone_and_all_but_colours(tab, tmp_path):
 
 def test_a_large_page_is_seen(tab, tmp_path):
     assert "kB of its own" in look(tab, tmp_path, GOOD.replace("Text", "Text " * 100_000))[-1]
+
+
+def test_a_heavy_visit_is_seen_though_all_of_it_is_shared(tab, tmp_path):
+    (tmp_path / "_static").mkdir()
+    noise = random.Random(1).randbytes(1_000_000)
+    (tmp_path / "_static" / "font.png").write_bytes(noise)
+    (tmp_path / "_static" / "zeros.js").write_bytes(b" " * 5_000_000)
+    light = GOOD.replace("<p>", '<script src="_static/zeros.js"></script><p>')
+    assert look(tab, tmp_path, light) == []
+    heavy = GOOD.replace("<p>", '<img src="_static/font.png" alt="Noise in grey."><p>')
+    assert "before any click" in look(tab, tmp_path, heavy)[0]
 
 
 @pytest.mark.parametrize(

@@ -23,11 +23,10 @@ SITE = ROOT / ".cache" / "live" / "site"
 CONF = """
 import sys
 sys.path.insert(0, {extensions!r})
-extensions = ["myst_nb", "live_page"]
+extensions = ["myst_nb", "typeset", "live_page"]
 html_theme, html_title, root_doc = "sphinx_book_theme", "A small book", "index"
 nb_execution_mode, nb_ipywidgets_js = "off", {{}}
-html_static_path = {static!r}
-mathjax_path = "mathjax/tex-chtml-full.js"
+html_math_renderer = "typeset"
 suppress_warnings = ["myst.domains"]
 myst_enable_extensions = ["dollarmath", "amsmath"]
 """
@@ -100,10 +99,7 @@ def site(tmp_path_factory) -> Path:
     if not (SITE / "manifest.json").exists():
         require(f"Python for the page could not be built: {done.stdout} {done.stderr}")
     source = tmp_path_factory.mktemp("small_book")
-    static = ROOT / ".cache" / "static"
-    conf = CONF.format(
-        extensions=str(ROOT / "book" / "_ext"), static=[str(static)] if static.exists() else []
-    )
+    conf = CONF.format(extensions=str(ROOT / "book" / "_ext"))
     for name, body in {**PAGES, "conf.py": conf, "lab.ipynb": lab_notebook()}.items():
         (source / name).write_text(body, encoding="utf-8")
     out = source / "_build"

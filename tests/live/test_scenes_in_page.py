@@ -316,7 +316,7 @@ def test_axe_finds_nothing_and_nothing_scrolls_sideways(open_page, page_name, th
     from browser import AXE, SEVERE, check_width
 
     if not AXE.exists():
-        pytest.skip("axe-core is not fetched (python tools/assets.py)")
+        pytest.skip("axe-core is not fetched (python tools/npm_packages.py)")
     seen = open_page(page_name, width=width, color_scheme=theme)
     if page_name == "scenes.html":
         seen.explorable(0), seen.explorable(1)

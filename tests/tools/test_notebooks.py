@@ -22,7 +22,7 @@ def make(path, *code, alt="A line that rises from one over four to nine."):
     """Write a small notebook: a title and some code cells, the last with an alt text."""
     cells = [nbformat.v4.new_markdown_cell("# A page")]
     cells += [nbformat.v4.new_code_cell(text) for text in code]
-    cells[-1].metadata["mystnb"] = {"image": {"alt": alt}}
+    cells[-1].metadata["mystnb"] = {"image": {"alt": alt}, "figure": {"caption": "A line."}}
     for number, cell in enumerate(cells):
         cell.id = f"cell-{number}"
     nbformat.write(nbformat.v4.new_notebook(cells=cells), path)
@@ -84,14 +84,21 @@ def notebook(**cell):
     return {"cells": [title, {**code, **cell}], "metadata": {}}
 
 
-PICTURE = [{"output_type": "display_data", "data": {"image/png": ""}}]
+ALT, CAPTION = {"alt": "Five particles under one curve."}, {"caption": "Five particles."}
+
+
+def picture(**about):
+    shown = [{"output_type": "display_data", "data": {"image/png": ""}}]
+    return notebook(outputs=shown, metadata={"mystnb": about})
 
 
 @pytest.mark.parametrize(
     ("broken", "expected"),
     [
-        (notebook(outputs=PICTURE), "no alt text"),
-        (notebook(outputs=PICTURE, metadata={"mystnb": {"image": {"alt": "plot"}}}), "no alt text"),
+        (picture(figure=CAPTION), "no alt text"),
+        (picture(image={"alt": "plot"}, figure=CAPTION), "no alt text"),
+        (picture(image=ALT), "no caption"),
+        (picture(image=ALT, figure={"caption": " "}), "no caption"),
         (notebook(outputs=[{"output_type": "error"}]), "error"),
         (notebook(id="t"), "ids"),
         ({"cells": notebook()["cells"][1:], "metadata": {}}, "title"),
@@ -103,8 +110,7 @@ def test_what_a_reader_would_miss_is_listed(broken, expected):
 
 
 def test_a_good_notebook_has_no_fault():
-    alt = {"mystnb": {"image": {"alt": "Five particles under one curve."}}}
-    assert notebooks.faults(notebook(outputs=PICTURE, metadata=alt)) == []
+    assert notebooks.faults(picture(image=ALT, figure=CAPTION)) == []
 
 
 def test_a_notebook_never_executed_is_stale():
