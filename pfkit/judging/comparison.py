@@ -43,6 +43,11 @@ class Interval(NamedTuple):
     low: float
     high: float
 
+    @property
+    def half(self) -> float:
+        """Half the distance between the limits: what stands behind a ±."""
+        return (self.high - self.low) / 2
+
     def __repr__(self) -> str:
         return f"{self.value:.4g} [{self.low:.4g}, {self.high:.4g}]"
 

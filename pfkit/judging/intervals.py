@@ -11,6 +11,7 @@ are as many independent numbers as clusters: a thousand seeds on one film say no
 from __future__ import annotations
 
 import math
+from functools import cache
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -21,6 +22,7 @@ from pfkit.judging.comparison import Interval, require_level
 Array = NDArray[np.float64]
 
 
+@cache
 def t_quantile(level: float, freedom: int) -> float:
     r"""The number t with :math:`P(|T| \le t) = \ell` for Student's distribution.
 

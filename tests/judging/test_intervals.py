@@ -40,14 +40,10 @@ def test_clusters_are_covered_and_ignoring_them_is_not():
     of = np.repeat(np.arange(6), 10)
     for _ in range(2000):
         x = rng.normal(0, 1, 6)[of] + rng.normal(0, 0.3, 60)
-        covered += abs(pf.cluster_interval(x, of).value) <= _half(pf.cluster_interval(x, of))
-        ignoring += abs(x.mean()) <= _half(pf.t_interval(x))
+        covered += abs(pf.cluster_interval(x, of).value) <= pf.cluster_interval(x, of).half
+        ignoring += abs(x.mean()) <= pf.t_interval(x).half
     assert abs(covered / 2000 - 0.95) < 0.022
     assert ignoring / 2000 < 0.6
-
-
-def _half(interval):
-    return (interval.high - interval.low) / 2
 
 
 def test_one_run_a_cluster_is_students_interval():
@@ -55,7 +51,7 @@ def test_one_run_a_cluster_is_students_interval():
     by_hand = pf.t_quantile(0.95, 7) * x.std(ddof=1) / math.sqrt(8)
     for interval in (pf.t_interval(x), pf.cluster_interval(x, list("abcdefgh"))):
         assert interval.value == pytest.approx(x.mean())
-        assert interval.high - interval.value == pytest.approx(by_hand)
+        assert interval.half == pytest.approx(by_hand)
 
 
 @pytest.mark.parametrize("x, clusters", [([1.0], ["a"]), ([1.0, 2.0], ["a", "a"]),
