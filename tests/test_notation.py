@@ -202,7 +202,8 @@ def label(path):
     topic = re.match(r"\d\d_(\w+)", path.stem)
     if topic:
         return topic[1].replace("_", " ")
-    return path.stem.removeprefix("autopsy_").split("_")[0]
+    name = path.stem.removeprefix("autopsy_")
+    return name.partition("_")[0] if name.startswith("lab") else name.replace("_", " ")
 
 
 def table_problems(page):
