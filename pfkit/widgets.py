@@ -48,6 +48,7 @@ export default {
     const engine = async () => ({
       open: (key, name, panel, seed) => ask({ ask: "open", seed }),
       run: (key, operations) => ask({ ask: "run", operations }),
+      many: (key, ticks, again) => ask({ ask: "many", ticks, again }),
     });
     const root = document.createElement("div");
     root.setAttribute("role", "group");
@@ -137,7 +138,7 @@ def _widget_class() -> Any:
         def __init__(self, name: str, about: dict[str, Any], told: str):
             self.host, self.name, self.told = Host(), name, told
             self.host.open("k", name, about["panel"], about["seed"])
-            super().__init__(about=about, start=dict(self.host.scenes["k"].values))
+            super().__init__(about=about, start=dict(self.host.runs["k"].worlds[0].values))
             self.on_msg(self._answer)
 
         def _answer(self, _: Any, message: dict[str, Any], __: Any) -> None:
@@ -148,13 +149,18 @@ def _widget_class() -> Any:
                 if message.get("ask") == "open":
                     self.host.open("k", self.name, self.about["panel"], message["seed"])
                 else:
-                    drawing, report = self.host.do("k", json.dumps(message["operations"]))
+                    drawing, report = self._asked(message)
                     buffers = [memoryview(drawing)]
                     answer["report"] = json.loads(report)
             except Exception as problem:
                 answer["error"] = f"{type(problem).__name__}: {problem}"
             answer["ms"] = 1000 * (time.perf_counter() - began)
             self.send(answer, buffers)
+
+        def _asked(self, message: dict[str, Any]) -> tuple[Any, str]:
+            if message.get("ask") == "many":
+                return self.host.many("k", message["ticks"], message["again"])
+            return self.host.do("k", json.dumps(message["operations"]))
 
         def _repr_mimebundle_(self, **kwargs: Any) -> Any:
             bundle = super()._repr_mimebundle_(**kwargs)

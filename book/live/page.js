@@ -115,16 +115,19 @@
   };
 
   const scenes = new PF.Python("scenes");
+  async function drawn(message) {
+    const answer = await scenes.ask(message);
+    return { ...answer, report: JSON.parse(answer.report) };
+  }
+
   async function engine(progress) {
     scenes.onProgress(progress);
     await scenes.start().finally(() => scenes.listeners.delete(progress));
     return {
       open: async (key, name, panel, seed) =>
         JSON.parse(await scenes.ask({ do: "open", key, name, panel, seed })),
-      run: async (key, operations) => {
-        const answer = await scenes.ask({ do: "run", key, operations: JSON.stringify(operations) });
-        return { ...answer, report: JSON.parse(answer.report) };
-      },
+      run: (key, operations) => drawn({ do: "run", key, operations: JSON.stringify(operations) }),
+      many: (key, ticks, again) => drawn({ do: "many", key, ticks, again }),
     };
   }
 

@@ -107,21 +107,24 @@ function short(error) {
   return lines[lines.length - 1].replace(/^pfkit\.errors\./, "");
 }
 
+/* A drawing and its report out of Python's hands, and how long that took. */
+function drawn(make) {
+  const start = performance.now();
+  const pair = make();
+  const proxy = pair.get(0), report = pair.get(1);
+  const view = proxy.getBuffer("f32");
+  const drawing = view.data.slice();
+  view.release();
+  proxy.destroy();
+  pair.destroy();
+  return { drawing, report, ms: performance.now() - start };
+}
+
 const DO = {
   boot,
   open: (m) => host.open(m.key, m.name, m.panel, m.seed),
-  close: (m) => host.close(m.key),
-  run(m) {
-    const start = performance.now();
-    const pair = host.do(m.key, m.operations);
-    const proxy = pair.get(0), report = pair.get(1);
-    const view = proxy.getBuffer("f32");
-    const drawing = view.data.slice();
-    view.release();
-    proxy.destroy();
-    pair.destroy();
-    return { drawing, report, ms: performance.now() - start };
-  },
+  run: (m) => drawn(() => host.do(m.key, m.operations)),
+  many: (m) => drawn(() => host.many(m.key, m.ticks, m.again)),
   cell: (m) => cells.run(m.cells, m.index),
   memory: () => python._module.HEAP8.length,
   progress: (m) => cells.progress(m.lab),

@@ -15,11 +15,20 @@ from __future__ import annotations
 from importlib import import_module
 
 from pfkit.errors import ParameterError
-from pfkit.explore.scene import Control, Mission, Panel, Scene
+from pfkit.explore.scene import Control, Mission, Panel, Scene, Score
 
-__all__ = ["FRONT_END", "SCENES", "Control", "Mission", "Panel", "Scene", "scene"]
+__all__ = ["FRONT_END", "SCENES", "Control", "Mission", "Panel", "Scene", "Score", "scene"]
 
-FRONT_END = ("render.js", "loading.js", "missions.js", "hand.js", "explorable.js")  # in web/
+FRONT_END = (  # in web/, in the order in which they are loaded
+    "render.js",
+    "loading.js",
+    "hand.js",
+    "controls.js",
+    "missions.js",
+    "transport.js",
+    "many.js",
+    "explorable.js",
+)
 SCENES = {
     "banana": ("pfkit.explore.banana", "Banana"),
     "comb": ("pfkit.explore.comb", "Comb"),

@@ -16,7 +16,7 @@ import numpy as np
 import pfkit as pf
 from pfkit.explore.camera import say_outside, wanted
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Phases, Readouts, Scene
 
 M = 300
 STEPS, DT = 24, 0.25
@@ -132,7 +132,8 @@ class Banana(Scene):
     panels: ClassVar[dict[str, Panel]] = {
         "banana": Panel(
             "Which robot made this banana?",
-            ("route", "a1", "a3", "a4", "a5", "guess"),
+            ("a1", "a3", "a4", "a5", "guess"),
+            ("route",),
             missions=(
                 Mission(
                     "one noise alone",
@@ -195,25 +196,36 @@ class Banana(Scene):
         elif value != "none":
             self.tell(f"Robot {value} is {'right' if value == self.hidden else 'wrong'}.")
 
-    def advance(self) -> None:
-        pass
+    def phases(self) -> tuple[str, ...]:
+        return ("drive",)
+
+    def advance(self) -> Phases:
+        step = min(self.ticks + 1, STEPS)
+        (along, across), (their_along, their_across) = (
+            self._spread(cloud[step], step) for cloud in (self.mine, self.theirs)
+        )
+        yield (
+            "drive",
+            f"Step {step} of {STEPS}: your cloud is {along:.2f} m long and {across:.2f} m wide, "
+            f"the hidden one {their_along:.2f} and {their_across:.2f} m.",
+        )
 
     @property
     def now(self) -> int:
         """Step of the route to show: it is driven once, then stays at its end."""
         return min(self.ticks, STEPS)
 
-    def _spread(self, cloud: np.ndarray) -> tuple[float, float]:
+    def _spread(self, cloud: np.ndarray, step: int) -> tuple[float, float]:
         """Standard deviations along and across the direction of motion."""
-        heading = self.mean[self.now, 2]
+        heading = self.mean[step, 2]
         dx, dy = cloud[:2] - cloud[:2].mean(axis=1, keepdims=True)
         along = dx * np.cos(heading) + dy * np.sin(heading)
         across = dy * np.cos(heading) - dx * np.sin(heading)
         return float(along.std()), float(across.std())
 
     def readouts(self) -> Readouts:
-        along, across = self._spread(self.mine[self.now])
-        h_along, h_across = self._spread(self.theirs[self.now])
+        along, across = self._spread(self.mine[self.now], self.now)
+        h_along, h_across = self._spread(self.theirs[self.now], self.now)
         guess = self.values["guess"]
         return {
             "along": along,

@@ -17,7 +17,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Phases, Readouts, Scene, Score
 from pfkit.particles.resampling import SCHEMES
 from pfkit.particles.resampling_wheel import resampling_wheel
 
@@ -128,6 +128,7 @@ class Comb(Scene):
         "comb": Panel(
             "The comb: five ways to pick from one bar",
             ("weights", "n", "pace", "scheme", "spread"),
+            score=Score("founders left", 20, 6),
             missions=(
                 Mission(
                     "a hundred draws",
@@ -171,20 +172,40 @@ class Comb(Scene):
         self.founders = FAMILY
         self._draw_once()
 
-    def advance(self) -> None:
+    def phases(self) -> tuple[str, ...]:
+        return ("pick", "descend")
+
+    def advance(self) -> Phases:
         for k in range(int(self.values["pace"]) - 1, -1, -1):
             self._draw_once(show=k == 0)
+        yield "pick", self._say_counts()
         log_w = self.values["spread"] * self.rng.standard_normal(FAMILY)
         w = np.exp(log_w - log_w.max())
         parents = FIVE[self.values["scheme"]](w / w.sum(), self.rng, FAMILY)
         self.parents.append(parents)
-        self.family = self.family[parents]
+        self.family, childless = self.family[parents], FAMILY - np.unique(parents).size
         before, self.founders = self.founders, np.unique(self.family).size
+        told = (
+            f"Generation {len(self.parents)} under {self.values['scheme']}: {childless} of "
+            f"{FAMILY} have no child, {self.founders} founders are left."
+        )
         if self.founders < before and self.founders in (12, 6, 3, 1):
-            self.tell(
-                f"Generation {len(self.parents)} under {self.values['scheme']}: "
-                f"{self.founders} of {FAMILY} founders left."
-            )
+            self.tell(told)
+        yield "descend", told
+
+    def _say_counts(self) -> str:
+        """Who strays furthest from n w in this draw."""
+        nw = self.n * self.w
+        gaps = {
+            name: np.bincount(picks, minlength=5) - nw for name, (picks, _) in self.shown.items()
+        }
+        name = max(gaps, key=lambda k: float(np.abs(gaps[k]).max()))
+        i = int(np.abs(gaps[name]).argmax())
+        copies = round(float(gaps[name][i] + nw[i]))
+        return (
+            f"Draw {self.draws}: {name} strays furthest, particle {LETTERS[i]} gets {copies} "
+            f"copies where n w is {nw[i]:.2f}."
+        )
 
     def _draw_once(self, show: bool = True) -> None:
         for name, scheme in FIVE.items():

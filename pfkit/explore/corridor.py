@@ -14,7 +14,7 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Phases, Readouts, Scene
 
 CELLS = 24
 DOORS = {
@@ -111,7 +111,8 @@ class Corridor(Scene):
     panels: ClassVar[dict[str, Panel]] = {
         "corridor": Panel(
             "Where in the corridor?",
-            tuple(c.name for c in all_controls),
+            ("move", "look", "hit", "false", "honest"),
+            ("slip", "skid", "doors", "auto", "carry"),
             missions=(
                 Mission(
                     "half the belief",
@@ -152,49 +153,63 @@ class Corridor(Scene):
         self.evidence = 1.0
         self.looks = 0
         self.told_half = False
-        self.phase = "start"
+        self.last = ""  # what was done last: "move" or "look"
 
-    def advance(self) -> None:
-        if self.values["auto"]:
-            self._look() if self.phase == "move" else self._move()
+    def phases(self) -> tuple[str, ...]:
+        return ("move", "look")
+
+    def advance(self) -> Phases:
+        if not self.values["auto"]:
+            yield self.last or "move", "Nothing moves by itself: press Move or Look."
+        elif self.last == "move":
+            yield "look", self._look()
+        else:
+            yield "move", self._move()
 
     def changed(self, name: str, value: Any) -> None:
         if name == "move":
-            self._move()
-            self.tell(f"Moved: the entropy is {self._entropy():.2f} bit.")
+            self.tell(self._move())
         elif name == "look":
-            self._look()
-            best = int(self.bel.argmax())
-            self.tell(f"Saw {self._seen()}: cell {best} has {100 * self.bel[best]:.0f} %.")
+            self.tell(self._look())
         elif name == "carry":
             self.robot = int(self.rng.integers(CELLS))
             self.tell(f"The robot was carried to cell {self.robot}; the filter is not told.")
         elif name in ("slip", "skid") and self.values["slip"] + self.values["skid"] > 0.95:
             self.values["skid" if name == "slip" else "slip"] = 0.95 - self.values[name]
 
-    def _move(self) -> None:
+    def _move(self) -> str:
+        """The robot goes on, and the belief with it; says what that cost."""
+        before = self._entropy()
         kernel = pf.shift_kernel(1, self.values["slip"], self.values["skid"])
         reach = kernel.size // 2
         self.robot = (self.robot + int(self.rng.choice(kernel.size, p=kernel)) - reach) % CELLS
         self.bel = self.predicted = pf.predict_1d(self.bel, kernel, ring=True)
-        self.phase = "move"
+        self.last = "move"
+        return f"Move: the entropy goes from {before:.2f} to {self._entropy():.2f} bit."
 
-    def _look(self) -> None:
+    def _look(self) -> str:
+        """The robot looks, and the belief is corrected; says what was seen."""
         hit, false = self.values["hit"], self.values["false"]
         real = (hit, false) if self.values["honest"] else (0.9, 0.08)
         self.saw = bool(self.rng.random() < real[0 if self.is_door[self.robot] else 1])
         self.predicted = self.bel
         self.likelihood = pf.door_likelihood(self.is_door, self.saw, hit, false)
         self.looks += 1
-        self.phase = "look"
+        self.last = "look"
         try:
             self.bel, evidence = pf.update_1d(self.bel, self.likelihood)
         except pf.DegenerateWeightsError:  # no cell can explain what was seen: show just that
             self.evidence = 0.0
-            self.tell("What was seen is impossible in every cell: the belief stays as it was.")
-            return
+            told = "What was seen is impossible in every cell: the belief stays as it was."
+            self.tell(told)
+            return told
         self.evidence = float(evidence)
         self._tell_best()
+        best = int(self.bel.argmax())
+        return (
+            f"Look: saw {self._seen()}, as expected with {100 * self.evidence:.0f} %; cell {best} "
+            f"holds {100 * self.bel[best]:.0f} %."
+        )
 
     def _tell_best(self) -> None:
         """One sentence when a cell comes to hold half of the belief, and when none does."""
@@ -241,12 +256,12 @@ class Corridor(Scene):
             pen.symbols("paper", "circle", doors + 0.18, np.full(doors.shape, 0.42), size=5)
         pen.segments("wall", -0.5, 0.15, CELLS - 0.5, 0.15, width=2)
         pen.robots("truth", self.robot, 0.3, 0.0, radius=0.42)
-        if self.saw is not None and self.phase == "look":
+        if self.saw is not None and self.last == "look":
             word = "door!" if self.saw else "wall"
             pen.text("ink", self.robot, 0.93, word, size=13, anchor=0)
         rows = (
-            ("belief before the look", self.predicted, "exact", self.phase == "move"),
-            ("p(z | cell)", self.likelihood, "measurement", self.phase == "look"),
+            ("belief before the look", self.predicted, "exact", self.last == "move"),
+            ("p(z | cell)", self.likelihood, "measurement", self.last == "look"),
             ("belief now", self.bel, "exact", True),
         )
         for row, (label, values, style, fresh) in enumerate(rows):

@@ -5,8 +5,9 @@ can see, and a particle filter guesses where it is. Everything here calls `pfkit
 chapters do: `predict`, `update`, `resample`. Panels choose what the reader can move; see
 `pfkit.explore.drive_panels`. The drawing is in `pfkit.explore.drive_view`.
 
-Time runs in ticks of 1/30 s. The robot and the particles move in every tick; it looks about every
-twelfth. The robot's noise and the filter's idea of it are two numbers, so that they can disagree.
+Time runs in ticks of 1/30 s. The robot and the particles move in every tick; it looks every
+twelfth, and the phases end then: predict (all twelve), weigh, resample. The robot's noise and the
+filter's idea of it are two numbers, so that they can disagree.
 """
 
 from __future__ import annotations
@@ -20,7 +21,7 @@ from pfkit.explore.camera import ease, wanted
 from pfkit.explore.drive_panels import CONTROLS, PANELS
 from pfkit.explore.drive_view import draw_drive
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Gauge, Panel, Readouts, Scene
+from pfkit.explore.scene import Gauge, Panel, Phases, Readouts, Scene
 
 ALPHA = np.array([0.20, 0.02, 0.25, 0.20, 0.02, 0.02])
 ROUTES = {
@@ -31,12 +32,13 @@ SQUARE_TURNS = pf.symmetries(pf.worlds.square())  # (3, 4), the first is none
 CARRIED = 3.0  # metres; a kidnapper takes the robot at least so far
 REACHED = 0.25  # metres; so near to where it was sent, the robot has arrived
 LOST = 1.5  # metres; a filter this wrong and still sure of itself is told of
+LIGHT = 0.1  # of an equal share of the weight: a particle below it is nearly weightless
 RANGE_MAX = 12.0  # metres; false readings are uniform up to here
 
 
 class Drive(Scene):
     name = "drive"
-    size = (760, 470)
+    size = (700, 500)
     rate = 60.0
     dt: ClassVar[float] = 1 / 30  # seconds of robot time in a tick
     look_every: ClassVar[int] = 12
@@ -61,6 +63,9 @@ class Drive(Scene):
         "in sight": Gauge(),
     }
 
+    floor = True
+    shared = ("world", "real", "faults", "model", "sight", "motion", "believed", "driver")
+
     # ---- the world --------------------------------------------------------------------------
     def start(self) -> None:
         v = self.values
@@ -81,6 +86,7 @@ class Drive(Scene):
         self.goal: tuple[float, float] | None = None
         self.carried_from: np.ndarray | None = None  # the robot is in the reader's hand
         self.errand = False  # the goal came from a tap: it is dropped when reached
+        self.moved_from: np.ndarray | None = None  # a landmark is in the reader's hand
         self.z = np.empty((0, 0))
         self.z_age, self.false = 99, np.empty(0, bool)
         self.given: np.ndarray | None = None
@@ -92,11 +98,13 @@ class Drive(Scene):
         self.lasting = 0.0  # seconds that it has stood so
         self.view = self.bounds
         self.history: list[tuple[float, float]] = []
-        self.trail: list[np.ndarray] = [self.truth.copy()]
+        self.trail = self.truth[:2, None].copy()
         self._build()
         self.bel = self._prior(int(self.values["M"]))
         self.ess = float(self.bel.ess)
         self._judge_filter()
+        self.before = self.truth, self.spread  # when the phase of prediction began
+        self.lineage = np.arange(self.bel.M)
 
     def _prior(self, M: int) -> pf.Particles:
         if self.values["prior"] == "known":
@@ -131,25 +139,64 @@ class Drive(Scene):
         self.believed = pf.VelocityMotion(tuple(alpha * v["trust"] ** 2))
 
     # ---- one tick ---------------------------------------------------------------------------
-    def advance(self) -> None:
+    def phases(self) -> tuple[str, ...]:
+        return ("look",) if self.values["show"] == "map" else ("predict", "weigh", "resample")
+
+    def advance(self) -> Phases:
+        v = self.values
+        self._move()
+        if self.ticks % self.look_every == self.look_every - 1:
+            if v["show"] == "map":
+                self._look()
+                self._judge_filter()
+                area = self.readouts()["likely area"]
+                yield "look", f"Look: {self._names_seen()} in sight; {area:.2f} m² are likely."
+            else:
+                self._judge_filter()
+                yield "predict", self._say_prediction()
+                yield "weigh", self._look()
+                yield "resample", self._resample()
+                self._judge_filter()
+                self.before = self.truth, self.spread
+        else:
+            self._judge_filter()
+        self._draw_charts_on()
+        if v["show"] == "copies":
+            self._count_hypotheses()
+
+    def _move(self) -> None:
         v = self.values
         self.u = u = self._command()
         if v["moves"]:
             self.truth = self._inside(self.motion.sample(self.truth, u, self.rng))
         self.z_age += 1
         self.given = None
-        if v["show"] != "map":
-            if v["do_predict"]:
-                self.bel = pf.predict(self.bel, u, self.believed, self.rng)
-            else:
-                self.bel = pf.Particles(self.believed.mean(self.bel.state, u), self.bel.log_w)
-        if self.ticks % self.look_every == self.look_every - 1:
-            self._look()
-        if self.ticks % 4 == 0:
-            self.trail = [*self.trail[-220:], self.truth.copy()]
-        self._judge_filter()
-        if v["show"] == "copies":
-            self._count_hypotheses()
+        if v["show"] == "map":
+            return
+        if v["do_predict"]:
+            self.bel = pf.predict(self.bel, u, self.believed, self.rng)
+        else:
+            self.bel = pf.Particles(self.believed.mean(self.bel.state, u), self.bel.log_w)
+
+    def _say_prediction(self) -> str:
+        truth, spread = self.before
+        driven, seconds = np.hypot(*(self.truth - truth)[:2]), self.look_every * self.dt
+        noise = "" if self.values["do_predict"] else ", without noise"
+        went = f"went from {spread:.2f} to {self.spread:.2f} m"
+        if f"{spread:.2f}" == f"{self.spread:.2f}":
+            went = f"stays {spread:.2f} m"
+        return f"Predict{noise}: {driven:.2f} m in {seconds:.1f} s; the spread {went}."
+
+    def _names_seen(self) -> str:
+        """The landmarks of the last look in words."""
+        if self.seen.size == 0:
+            return "no landmark"
+        if self.anonymous:
+            return f"{self.seen.size} landmarks without names"
+        numbers = [str(i + 1) for i in self.seen]
+        if len(numbers) == 1:
+            return f"landmark {numbers[0]}"
+        return f"landmarks {', '.join(numbers[:-1])} and {numbers[-1]}"
 
     def _count_hypotheses(self) -> None:
         before, self.alive = self.alive, int((self.masses() > 0.02).sum())
@@ -161,9 +208,6 @@ class Drive(Scene):
         """What the robot is told: (v, omega, dt), by autopilot, keys or pointer."""
         v = self.values
         if not v["moves"]:
-            return np.array([0.0, 0.0, self.dt])
-        if v["hand"] == "landmark" and (v["throttle"] or v["steer"]):
-            self._nudge(-v["steer"] * 2.5 * self.dt, v["throttle"] * 2.5 * self.dt)
             return np.array([0.0, 0.0, self.dt])
         if self.goal is not None:
             dx, dy = self.goal[0] - self.truth[0], self.goal[1] - self.truth[1]
@@ -183,27 +227,54 @@ class Drive(Scene):
         pose[:2] = np.clip(pose[:2], (x0 + 0.2, y0 + 0.2), (x1 - 0.2, y1 - 0.2))
         return pose
 
-    def _look(self) -> None:
-        """Measure what is in sight, and let the filter use it."""
+    def _look(self) -> str:
+        """Measure what is in sight, and weigh the particles with it."""
         v = self.values
         self.z_age = 0
         self.z = self._measure()
-        if self.z.size == 0 or v["show"] == "map" or not v["do_weigh"]:
-            return
+        if v["show"] == "map":
+            return ""
+        if self.z.size == 0:
+            return "Weigh: nothing in sight, the weights stay."
+        if not v["do_weigh"]:
+            return f"Weigh: switched off; {self._names_seen()} seen and not used."
         self.given = given = self.z[:-1] if self.anonymous else self.z
         if v["defence"] == "gate":
             self.counts["rejected"] += int((~self.model.accepts(given, self.bel.state)).sum())
         self.bel, _ = pf.update(self.bel, given, self.model)
         self.ess = float(self.bel.ess)
-        if v["do_resample"] and self.ess < v["threshold"] * self.bel.M:
-            self.bel = pf.resample(self.bel, pf.SCHEMES[v["scheme"]], self.rng)
-            self.counts["resampled"] += 1
-            if (n := self.counts["resampled"]) in (1, 10, 100, 1000):
-                times = "for the first time" if n == 1 else f"{n} times so far"
-                self.tell(f"Resampled {times}; the effective size was {self.ess:.0f}.")
-            if v["fresh"]:
-                share = v["fresh"] / 100
-                self.bel, _ = pf.inject(self.bel, share, self.world.sample_poses, self.rng)
+        light = int((self.bel.log_w < np.log(LIGHT / self.bel.M)).sum())
+        return (
+            f"Weigh: {self._names_seen()} seen; {light} of {self.bel.M} particles are nearly "
+            f"weightless, the effective size is {self.ess:.0f}."
+        )
+
+    def _resample(self) -> str:
+        """Turn the weights into copies, if the effective size asks for it."""
+        v, M = self.values, self.bel.M
+        if not v["do_resample"]:
+            return f"Resample: switched off; the effective size stays {self.ess:.0f} of {M}."
+        if not (self.given is not None and self.ess < v["threshold"] * M):
+            return f"Resample: not now; the effective size is {self.ess:.0f} of {M}."
+        before, ancestors = self.ess, np.arange(M)
+
+        def remembering(w: np.ndarray, rng: np.random.Generator, n: int) -> np.ndarray:
+            ancestors[:] = pf.SCHEMES[v["scheme"]](w, rng, n)
+            return ancestors
+
+        self.bel = pf.resample(self.bel, remembering, self.rng)
+        self.lineage = self.lineage[ancestors]
+        self.counts["resampled"] += 1
+        told = f"Resample: all {M} particles now descend from {np.unique(ancestors).size}"
+        if v["fresh"]:
+            share = v["fresh"] / 100
+            self.bel, new = pf.inject(self.bel, share, self.world.sample_poses, self.rng)
+            self.lineage = np.where(new, -1, self.lineage)
+            told += f"; {new.sum()} are fresh"
+        if (n := self.counts["resampled"]) in (1, 10, 100, 1000):
+            times = "for the first time" if n == 1 else f"{n} times so far"
+            self.tell(f"Resampled {times}; the effective size was {before:.0f}.")
+        return told + "."
 
     def _measure(self) -> np.ndarray:
         """One reading of each landmark in sight, some of them false: (n, K)."""
@@ -222,9 +293,14 @@ class Drive(Scene):
         self.error, self.turn_error = float(np.hypot(dx, dy)), abs(float(pf.wrap(turn)))
         self.spread = float(np.sqrt(self.Sigma[0, 0] + self.Sigma[1, 1]))
         self._tell_standing()
+
+    def _draw_charts_on(self) -> None:
+        """The camera, the trail and the charts, once a tick."""
         self.view = ease(self.view, wanted(self.bounds, *self.bel.state[:2]), self.rate)
         if self.look_every == 1 or self.ticks % 4 == 0:
             self.history = [*self.history[-159:], (self.ess / self.bel.M, self.error)]
+        if self.ticks % 4 == 0:
+            self.trail = np.append(self.trail[:, -220:], self.truth[:2, None], axis=1)
 
     def _tell_standing(self) -> None:
         """One sentence when the filter has found the robot, or is sure and wrong, for a second."""
@@ -253,8 +329,6 @@ class Drive(Scene):
     def changed(self, name: str, value: Any) -> None:
         if name == "kidnap":
             self._carry_off(None)
-        elif name == "point":
-            self._touch(*value)
         elif name == "add":
             self._place(self.world.sample_poses(1, self.rng)[:2, 0])
         elif name == "fifth":
@@ -263,20 +337,12 @@ class Drive(Scene):
             self.landmarks = np.delete(self.landmarks, self.selected, axis=1)
             self.selected = min(self.selected, self.landmarks.shape[1] - 1)
             self.z = np.empty((0, 0))
-        elif name == "next":
-            self.selected = (self.selected + 1) % self.landmarks.shape[1]
         self._build()
 
     def _place(self, at: np.ndarray) -> None:
         if self.landmarks.shape[1] < 12:
             self.landmarks = np.append(self.landmarks, np.reshape(at, (2, 1)), axis=1)
             self.selected = self.landmarks.shape[1] - 1
-
-    def _nudge(self, dx: float, dy: float) -> None:
-        x0, x1, y0, y1 = self.bounds
-        at = self.landmarks[:, self.selected] + (dx, dy)
-        self.landmarks[:, self.selected] = np.clip(at, (x0, y0), (x1, y1))
-        self._build()
 
     def _carry_off(self, to: np.ndarray | None) -> None:
         """Kidnap: the robot is put down well away from here and the filter is not told."""
@@ -290,42 +356,60 @@ class Drive(Scene):
         carried = np.hypot(*(self.truth - before)[:2])
         self.told_standing = ""
         self.tell(f"The robot was carried off, {carried:.1f} m; the filter is not told.")
-        self.trail = [self.truth.copy()]
+        self.trail = self.truth[:2, None].copy()
         self._judge_filter()
+        self.before = self.truth, self.spread
 
-    def handles(self) -> list[tuple[float, float]]:
-        places = self.landmarks.T if self.values["hand"] == "landmark" else self.truth[None, :2]
-        return [(float(x), float(y)) for x, y in places]
+    def held(self, name: str, x: float, y: float, touch: str) -> None:
+        match name.split():
+            case []:  # the floor: it drives there
+                self.goal = None if touch in ("release", "cancel") else (x, y)
+                self.errand = touch == "tap"
+            case ["robot"]:
+                self._carry(np.array([x, y, self.truth[2]]), touch)
+            case ["landmark", number] if 0 < int(number) <= self.landmarks.shape[1]:
+                self._move_landmark(int(number) - 1, np.array([x, y]), touch)
+            case ["threshold"]:
+                self.turn("threshold", y)
+            case ["range", "noise"]:
+                self.turn("sigma_r", abs(self._from_first(x, y)[0]) / 2)
+            case ["bearing", "noise"]:
+                self.turn("sigma_phi", np.degrees(abs(self._from_first(x, y)[1])) / 2)
+            case _:
+                super().held(name, x, y, touch)
 
-    def _touch(self, x: float, y: float, phase: float) -> None:
-        hand, at = self.values["hand"], np.array([x, y])
-        press, drag, release, tap, cancel = (phase == k for k in range(5))
-        if hand == "drive":
-            self.goal, self.errand = None if release or cancel else (x, y), tap
-        elif hand == "robot" and cancel:
-            self.truth = self.truth if self.carried_from is None else self.carried_from
-            self.carried_from = None
-        elif hand == "robot":
-            self._carry(np.array([x, y, self.truth[2]]), drag, release or tap)
-        elif press or tap:
-            gap = np.hypot(*(self.landmarks - at[:, None]))
-            self.selected = int(gap.argmin())
-            if gap.min() > 1.0:
-                self._place(at)
-        elif drag:
-            self._nudge(*(at - self.landmarks[:, self.selected]))
+    def _from_first(self, x: float, y: float) -> tuple[float, float]:
+        """Range and bearing of a place less those of landmark 1, seen by the robot."""
+        (r, phi), (r1, phi1) = (
+            (np.hypot(*d), np.arctan2(*d[::-1]))
+            for d in (np.array([x, y]) - self.truth[:2], self.landmarks[:, 0] - self.truth[:2])
+        )
+        return float(r - r1), float(pf.wrap(phi - phi1))
 
-    def _carry(self, to: np.ndarray, lifted: bool, put_down: bool) -> None:
+    def _move_landmark(self, i: int, to: np.ndarray, touch: str) -> None:
+        if touch in ("press", "tap"):
+            self.selected, self.moved_from = i, self.landmarks[:, i].copy()
+            return
+        if touch == "cancel" and self.moved_from is not None:
+            to = self.moved_from
+        x0, x1, y0, y1 = self.bounds
+        self.landmarks[:, i] = np.clip(to, (x0, y0), (x1, y1))
+        self._build()
+
+    def _carry(self, to: np.ndarray, touch: str) -> None:
         """The reader carries the robot in the air, then puts it down: a kidnap."""
-        if lifted and self.carried_from is None:
+        if touch == "press":
             self.carried_from = self.truth
-        if put_down and self.values["show"] != "map":
-            self.truth = self.truth if self.carried_from is None else self.carried_from
-            self._carry_off(to)
-        elif lifted or put_down:
+        elif touch == "drag":
             self.truth = self._inside(to)
-        if put_down:
-            self.carried_from = None
+        elif self.carried_from is not None and touch != "tap":
+            put_down, self.truth = self._inside(to), self.carried_from
+            if touch == "release" and self.values["show"] != "map":
+                self._carry_off(put_down)
+            elif touch == "release":
+                self.truth = put_down
+        if touch != "drag":
+            self.carried_from = self.carried_from if touch == "press" else None
 
     # ---- what is shown ----------------------------------------------------------------------
     def likelihood_map(self) -> tuple[np.ndarray, np.ndarray]:

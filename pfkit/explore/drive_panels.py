@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from pfkit.explore.scene import Control, Mission, Panel
+from pfkit.explore.scene import Control, Mission, Panel, Score
 
 SCHEMES = (
     ("systematic", "systematic"),
@@ -132,24 +132,12 @@ CONTROLS = (
         "Autopilot",
         "toggle",
         True,
-        help="Off, the robot waits for you: arrow keys, or press in the picture.",
-        keys={},
+        help="Off, the robot waits for you: arrow keys, or press on the floor.",
     ),
-    Control(
-        "hand",
-        "Your pointer and arrow keys",
-        "choice",
-        "drive",
-        choices=(
-            ("drive", "drive the robot"),
-            ("landmark", "move landmarks"),
-            ("robot", "carry the robot"),
-        ),
-        help="Press and drag in the picture. A press on empty floor can place a new landmark.",
-    ),
-    Control("next", "Next landmark", "button", help="Select another one.", keys={"n": True}),
     Control("add", "Add a landmark", "button", help="Somewhere.", keys={"a": True}),
-    Control("remove", "Remove it", "button", help="The selected one; one stays.", keys={"d": True}),
+    Control(
+        "remove", "Remove it", "button", help="The one you held last; one stays.", keys={"d": True}
+    ),
     Control("fifth", "Put up a fifth landmark", "button", help="At (13, 7.5)."),
     Control(
         "throttle",
@@ -223,7 +211,6 @@ CONTROLS = (
         True,
         help="Off, each particle picks the landmark that fits best.",
     ),
-    Control("point", "Pointer", "point"),
     # Fixed by the panel; no reader sees them.
     Control(
         "world", "World", "choice", "arena", choices=(("arena", ""), ("pair", ""), ("square", ""))
@@ -233,8 +220,8 @@ CONTROLS = (
     ),
     Control("moves", "Moves", "toggle", True),
 )
-HANDS = ("autopilot", "hand", "throttle", "steer", "point")
-SENSOR = ("sense", "sigma_r", "sigma_phi", "sight")
+HANDS = ("autopilot", "throttle", "steer")
+LATE = Score("error", 1200, 1.0)  # lost or not, after twenty seconds
 
 
 def _found(s) -> bool:
@@ -252,7 +239,9 @@ def _off(switch: bool) -> bool:
 PANELS = {
     "localise": Panel(
         "Drive and localise",
-        ("M", "prior", *SENSOR, "noise", "scheme", "threshold", "fresh", "kidnap", *HANDS),
+        ("kidnap", "M", "fresh", "sense", "sigma_r"),
+        ("prior", "sigma_phi", "sight", "noise", "scheme", "threshold", *HANDS),
+        score=LATE,
         missions=(
             Mission(
                 "found",
@@ -279,9 +268,9 @@ PANELS = {
     ),
     "sensing": Panel(
         "What one look says about the position",
-        (*SENSOR, "next", "add", "remove", *HANDS),
-        values={"show": "map", "world": "pair", "sense": "range", "hand": "landmark",
-                "autopilot": True, "sight": 12.0, "sigma_r": 0.4},
+        ("sense", "sigma_r", "sigma_phi", "add", "remove"),
+        ("sight", *HANDS),
+        values={"show": "map", "world": "pair", "sense": "range", "sight": 12.0, "sigma_r": 0.4},
         missions=(
             Mission(
                 "one landmark",
@@ -309,7 +298,9 @@ PANELS = {
     ),
     "assembly": Panel(
         "Take the filter apart",
-        ("do_predict", "do_weigh", "do_resample", "M", "prior", "threshold", "noise", *HANDS),
+        ("do_predict", "do_weigh", "do_resample", "M", "threshold"),
+        ("prior", "noise", *HANDS),
+        score=LATE,
         missions=(
             Mission(
                 "no resampling",
@@ -337,7 +328,9 @@ PANELS = {
     ),
     "outliers": Panel(
         "False readings",
-        ("outliers", "defence", "gate", "epsilon", "M", "prior", "sigma_r", "kidnap", *HANDS),
+        ("outliers", "defence", "gate", "epsilon", "kidnap"),
+        ("M", "prior", "sigma_r", *HANDS),
+        score=LATE,
         values={"outliers": 20, "prior": "known", "sight": 6.0},
         missions=(
             Mission(
@@ -374,7 +367,9 @@ PANELS = {
     ),
     "symmetry": Panel(
         "Four places that look the same",
-        ("M", "scheme", "threshold", "noise", "trust", "sigma_r", "fifth", "names", *HANDS),
+        ("fifth", "M", "scheme", "noise", "names"),
+        ("threshold", "trust", "sigma_r", *HANDS),
+        score=Score("error", 1200, 3.0),
         values={"world": "square", "show": "copies", "names": False, "sight": 22.0, "M": 2000,
                 "sigma_r": 1.0, "sigma_phi": 20.0, "threshold": 0.7},
         record=(416, 16),
@@ -407,8 +402,10 @@ PANELS = {
     ),
     "kidnap": Panel(
         "Kidnapped",
-        ("kidnap", "fresh", "M", *SENSOR, "scheme", "threshold", *HANDS),
-        values={"prior": "known", "hand": "robot"},
+        ("kidnap", "fresh", "M", "sense", "threshold"),
+        ("sigma_r", "sigma_phi", "sight", "scheme", *HANDS),
+        values={"prior": "known"},
+        score=Score("error", 900, 1.0, moves=((300, "kidnap", True),)),
         missions=(
             Mission(
                 "never unsure",

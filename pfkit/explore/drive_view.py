@@ -21,10 +21,10 @@ def draw_drive(s: Scene, pen: Pen) -> None:
         pen.image("exact", np.sqrt(p / p.max()), (x0, x1), (y0, y1))
     else:
         pen.line("wall", [x0, x1, x1, x0, x0], [y0, y0, y1, y1, y0], width=1)
-        trail = np.array(s.trail)
-        pen.line("truth", trail[:, 0], trail[:, 1], width=1.5)
+        pen.line("truth", *s.trail, width=1.5)
         draw_cloud(s, pen)
     _landmarks(s, pen)
+    _noise(s, pen)
     if s.z_age < FADE and s.z.size and not alone:
         _beams(s, pen)
     if s.values["show"] == "copies":
@@ -33,7 +33,7 @@ def draw_drive(s: Scene, pen: Pen) -> None:
         pen.quills("muted", x, y, theta, length=24)
     if not alone:
         draw_estimate(s, pen)
-    pen.robots("truth", *s.truth, radius=0.18)
+    draw_robot(s, pen, 0.18)
     if not alone:
         say_outside(pen, s.view, s.estimate)
         draw_charts(s, pen)
@@ -53,14 +53,47 @@ def draw_cloud(s: Scene, pen: Pen) -> None:
 
 def _landmarks(s: Scene, pen: Pen) -> None:
     mx, my = s.landmarks
-    chosen = s.values["hand"] == "landmark"
-    beside = 0.45 if chosen else 0.25  # metres; outside the ring of the selected one
     pen.symbols("landmarks", "diamond", mx, my, size=17)
     for i in range(mx.size):
         if not s.anonymous:
-            pen.text("ink", mx[i] + beside, my[i] + beside, str(i + 1), size=11)
-    if chosen:
-        pen.ellipses("landmarks", mx[s.selected], my[s.selected], 0.42, 0.42, width=2, dash=3)
+            pen.text("ink", mx[i] + 0.25, my[i] + 0.25, str(i + 1), size=11)
+        pen.handle(f"landmark {i + 1}", mx[i], my[i], grip=False)
+    if "remove" in s.panel.controls:
+        pen.ellipses("landmarks", mx[s.selected], my[s.selected], 0.35, 0.35, width=2, dash=3)
+
+
+def _noise(s: Scene, pen: Pen) -> None:
+    """Two standard deviations of a reading of landmark 1, with grips to pull them."""
+    if "sigma_r" not in (*s.panel.controls, *s.panel.more):
+        return
+    sense, v = s.values["sense"], s.values
+    m = s.landmarks[:, 0]
+    r, phi = np.hypot(*(m - s.truth[:2])), np.arctan2(*(m - s.truth[:2])[::-1])
+    along = 2 * v["sigma_r"] * np.array([np.cos(phi), np.sin(phi)])
+    turn = phi + 2 * np.radians(v["sigma_phi"]) * np.linspace(-1, 1, 13)
+    arc = s.truth[:2, None] + r * np.array([np.cos(turn), np.sin(turn)])
+    if sense == "both":
+        around = np.linspace(0, 2 * np.pi, 49)
+        reach = r + 2 * v["sigma_r"] * np.cos(around)
+        bearing = phi + 2 * np.radians(v["sigma_phi"]) * np.sin(around)
+        pen.line("measurement", s.truth[0] + reach * np.cos(bearing),
+                 s.truth[1] + reach * np.sin(bearing), width=1, dash=3)  # fmt: skip
+    elif sense == "range":
+        pen.segments("measurement", *(m - along), *(m + along), width=1)
+    else:
+        pen.line("measurement", *arc, width=1)
+    x0, x1, y0, y1 = s.view
+    ends = {"range noise": m - along, "bearing noise": arc[:, -1]}
+    for name, at in ends.items():
+        used = sense in ("both", name.split()[0])
+        if used and x0 < at[0] < x1 and y0 < at[1] < y1:
+            pen.handle(name, *at)
+
+
+def draw_robot(s: Scene, pen: Pen, radius: float) -> None:
+    """The true robot, which a hand can carry off."""
+    pen.robots("truth", *s.truth, radius=radius)
+    pen.handle("robot", *s.truth[:2], grip=False)
 
 
 def _beams(s: Scene, pen: Pen) -> None:
@@ -108,7 +141,7 @@ def draw_estimate(s: Scene, pen: Pen) -> None:
 
 def draw_charts(s: Scene, pen: Pen, landmarks: bool = True) -> None:
     """Legend, effective share of the particles, and error, over the last ten seconds."""
-    left, width = 0.765, 0.225
+    left, width = 0.765, 0.215
     pen.view((left, 0.74, width, 0.24), (0, 1), (0, 4), frame=False)
     pen.robots("truth", 0.06, 3.5, 0.0, radius=0.001)
     pen.text("ink", 0.18, 3.5, "robot", size=11)
@@ -128,6 +161,8 @@ def draw_charts(s: Scene, pen: Pen, landmarks: bool = True) -> None:
     pen.area("particles", [at[0], *at, at[-1]], [0, *share, 0], alpha=0.18)
     pen.line("particles", at, share, width=2)
     pen.text("ink", 0, 1.13, "ESS / M, of 1", size=11)
+    if "threshold" in (*s.panel.controls, *s.panel.more):
+        pen.handle("threshold", 159, s.values["threshold"])
     top = 1.0 if error.max() < 1 else 2.0 if error.max() < 2 else 5.0 if error.max() < 5 else 12.0
     pen.view((left, 0.04, width, 0.24), (0, 159), (0, top))
     pen.area("estimate", [at[0], *at, at[-1]], [0, *np.minimum(error, top), 0], alpha=0.18)

@@ -18,7 +18,7 @@ from pfkit.explore.drive import Drive
 from pfkit.explore.drive_panels import CONTROLS, HANDS
 from pfkit.explore.drive_view import draw_drive
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Gauge, Mission, Panel, Readouts
+from pfkit.explore.scene import Gauge, Mission, Panel, Phases, Readouts, Score
 
 CELLS = (25, 20, 24)
 COARSE = {  # a grid sees nothing finer than its cells, so the noises start above them
@@ -43,8 +43,9 @@ class Exact(Drive):
     panels: ClassVar[dict[str, Panel]] = {
         "exact": Panel(
             "The exact answer beside the cloud",
-            ("M", "prior", "sense", "sigma_r", "sigma_phi", "scheme", "threshold", "trust",
-             "fresh", "kidnap", *HANDS),
+            ("M", "trust", "sense", "sigma_r", "kidnap"),
+            ("prior", "sigma_phi", "scheme", "threshold", "fresh", *HANDS),
+            score=Score("divergence", 20, 1.0),
             missions=(
                 Mission(
                     "a hundred times the work",
@@ -80,8 +81,15 @@ class Exact(Drive):
             self.grid = pf.uniform_grid(CELLS, self.bounds)
         self.nats = 0.0
 
-    def advance(self) -> None:
-        super().advance()
+    def advance(self) -> Phases:
+        for name, sentence in super().advance():
+            if name == "weigh":
+                self._weigh_grid()
+                sentence = f"{sentence[:-1]}; to the exact belief it is {self.nats:.2f} nats."
+            yield name, sentence
+
+    def _weigh_grid(self) -> None:
+        """The exact filter's step, and how far the weighted cloud is from it."""
         exact = self.motion  # what the robot really does; the filter's idea of it may differ
         self.grid = pf.predict_by_convolution(self.grid, self.u, exact, self.chance, draws=600)
         if self.given is not None:

@@ -17,7 +17,7 @@ import numpy as np
 import pfkit as pf
 from pfkit.explore.camera import ease, say_outside, wanted
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Phases, Readouts, Scene, Score
 
 BOUNDS = (-90.0, 20.0, -5.0, 95.0)
 LAWN = (-90.0, 20.0, -12.0, 95.0)  # a beacon stands just below the bounds
@@ -120,7 +120,9 @@ class Mower(Scene):
     panels: ClassVar[dict[str, Panel]] = {
         "mower": Panel(
             "A real mower among four radio beacons",
-            ("bias", "keep", "sigma_r", "start", "M", "begin"),
+            ("bias", "keep", "sigma_r", "start", "begin"),
+            ("M",),
+            score=Score("error", 200, FAR),
             missions=(
                 Mission(
                     "sure and wrong",
@@ -163,11 +165,23 @@ class Mower(Scene):
         self.chart: list[tuple[float, float]] = []
         self.heard: tuple[int, float] | None = None
         self._judge_cloud()
+        self._film()
 
-    def advance(self) -> None:
+    shared = ("log",)
+
+    def phases(self) -> tuple[str, ...]:
+        return ("predict", "weigh")
+
+    def advance(self) -> Phases:
         if self.k >= len(self.log):
+            yield "predict", "The log ends here."
+            yield "weigh", f"After {self.used} ranges the error is {self.error:.2f} m."
             return
-        self.bel = pf.predict(self.bel, self.log.u[:, self.k], pf.ComposedMotion(), self.rng)
+        before = self.spread
+        u = self.log.u[:, self.k]
+        self.bel = pf.predict(self.bel, u, pf.ComposedMotion(), self.rng)
+        self._judge_cloud()
+        yield "predict", f"Predict: the spread goes from {before:.2f} to {self.spread:.2f} m."
         keep = int(self.values["keep"])
         self.heard = None
         self.thin_for = self.thin_for + 1 if keep >= 20 else 0
@@ -176,6 +190,13 @@ class Mower(Scene):
         self.truth = self.log.truth[:, self.k]
         self.k += 1
         self._judge_cloud()
+        self._film()
+        if self.heard is None:
+            yield "weigh", "Weigh: this range is thrown away."
+        else:
+            beacon, r = self.heard
+            far = f"beacon {beacon + 1} is {r:.1f} m away"
+            yield "weigh", f"Weigh: {far}; the spread is {self.spread:.2f} m now."
 
     def _listen(self, z: np.ndarray) -> None:
         bias = recorded()["bias"] if self.values["bias"] else 0.0
@@ -192,6 +213,9 @@ class Mower(Scene):
         self.mean, Sigma = pf.mean_pose(self.bel), pf.covariance(self.bel)
         self.error = float(np.hypot(*(self.mean - self.truth)[:2]))
         self.spread = float(np.sqrt(Sigma[0, 0] + Sigma[1, 1]))
+
+    def _film(self) -> None:
+        """The camera and the chart, once a tick."""
         self.chart.append((self.error, self.spread))
         self.view = ease(self.view, wanted(LAWN, *self.bel.state[:2]), self.rate)
         self._tell_standing()

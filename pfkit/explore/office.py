@@ -15,9 +15,15 @@ import pfkit as pf
 from pfkit.explore.camera import say_outside
 from pfkit.explore.drive import ALPHA, Drive
 from pfkit.explore.drive_panels import CONTROLS, HANDS
-from pfkit.explore.drive_view import draw_charts, draw_cloud, draw_estimate, draw_readings
+from pfkit.explore.drive_view import (
+    draw_charts,
+    draw_cloud,
+    draw_estimate,
+    draw_readings,
+    draw_robot,
+)
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Mission, Panel
+from pfkit.explore.scene import Control, Mission, Panel, Score
 from pfkit.worlds.arenas import OFFICE_DOORS, OFFICE_FURNITURE, OFFICE_ROUTE, OFFICE_WALLS
 
 REACH = 5.0  # metres, the laser's
@@ -58,23 +64,15 @@ OWN = (
         unit="%",
         help="Share of beams that end too early; the filter allows for 10 %.",
     ),
-    Control(
-        "hand",
-        "Your pointer",
-        "choice",
-        "drive",
-        choices=(("drive", "drives the robot"), ("robot", "carries it off")),
-        help="Press and drag in the picture.",
-    ),
 )
 KEPT = ("M", "prior", "noise", "trust", "scheme", "threshold", "fresh", "kidnap", "autopilot",
-        "throttle", "steer", "point", "do_predict", "do_weigh", "do_resample", "show", "moves",
+        "throttle", "steer", "do_predict", "do_weigh", "do_resample", "show", "moves",
         "outliers", "defence")  # fmt: skip
 
 
 class Office(Drive):
     name = "office"
-    size = (760, 420)
+    size = (760, 440)
     record_steps = 500
     record_every = 12
     still_at = 60
@@ -86,8 +84,9 @@ class Office(Drive):
     panels: ClassVar[dict[str, Panel]] = {
         "office": Panel(
             "Lost in the office",
-            ("M", "prior", "model", "K", "sigma_hit", "clutter", "noise", "threshold", "fresh",
-             "kidnap", *HANDS),
+            ("kidnap", "M", "K", "model", "fresh"),
+            ("prior", "sigma_hit", "clutter", "noise", "threshold", *HANDS),
+            score=Score("error", 900, 1.0),
             missions=(
                 Mission(
                     "found",
@@ -115,6 +114,8 @@ class Office(Drive):
         )
     }  # fmt: skip
 
+    shared = ("world", "real", "model", "motion", "believed", "driver")
+
     def start(self) -> None:
         self.layout = "office"
         self.world = pf.worlds.office()
@@ -139,6 +140,9 @@ class Office(Drive):
         self.motion = pf.VelocityMotion(tuple(ALPHA * v["noise"] ** 2))
         self.believed = pf.VelocityMotion(tuple(ALPHA * (v["noise"] * v["trust"]) ** 2))
 
+    def _names_seen(self) -> str:
+        return "one beam" if self.z.shape[-1] == 1 else f"{self.z.shape[-1]} beams"
+
     def _measure(self) -> np.ndarray:
         z = self.real.sample(self.truth, self.rng)
         self.false = z[0] < 0.6 * self.real.expected(self.truth)[0]
@@ -153,8 +157,6 @@ class Office(Drive):
     def changed(self, name: str, value: Any) -> None:
         if name == "kidnap":
             self._carry_off(None)
-        elif name == "point":
-            self._touch(*value)
         else:
             self._build()
 
@@ -167,14 +169,13 @@ class Office(Drive):
         ):
             left, right, low, high = np.array(boxes).T
             pen.bars(style, left, right, low, high)
-        trail = np.array(self.trail)
-        pen.line("truth", trail[:, 0], trail[:, 1], width=1.5)
+        pen.line("truth", *self.trail, width=1.5)
         draw_cloud(self, pen)
         if self.z_age < 10 and self.z.size:
             x, y, theta = self.truth
             ends = self.z[0] * np.exp(1j * (theta + self.z[1])) + x + 1j * y
             draw_readings(self, pen, ends.real, ends.imag, width=1.5)
         draw_estimate(self, pen)
-        pen.robots("truth", *self.truth, radius=BODY)
+        draw_robot(self, pen, BODY)
         say_outside(pen, self.view, self.estimate)
         draw_charts(self, pen, landmarks=False)

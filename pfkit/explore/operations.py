@@ -15,29 +15,38 @@ from typing import NamedTuple
 
 
 class Operation(NamedTuple):
-    """How a recording stores an operation's numbers; ``rows`` 0: exactly."""
+    """How a recording stores an operation's numbers (``rows`` 0: exactly) and moves between frames.
+
+    ``move`` says which numbers may lie between those of two frames: none, all behind the lead, or
+    all with a last row of angles, which turn the short way. What is ``loose`` is a set: its members
+    move only if the recording knows which one became which.
+    """
 
     name: str
     lead: int = 0
     rows: int = 0
+    move: str = ""  # "", "all", "angle"
+    loose: bool = False
 
 
 OPERATIONS = (
-    Operation("view"),
-    Operation("points", lead=1, rows=2),
+    Operation("view", move="all"),
+    Operation("points", lead=1, rows=2, move="all", loose=True),
     Operation("bubbles", rows=3),
-    Operation("segments", lead=1, rows=4),
-    Operation("line"),
-    Operation("area"),
-    Operation("bars"),
-    Operation("robots"),
-    Operation("ellipses", lead=2, rows=5),
-    Operation("stems", lead=2, rows=2),
-    Operation("image", lead=6, rows=1),
+    Operation("segments", lead=1, rows=4, move="all"),
+    Operation("line", lead=2, rows=2, move="all"),
+    Operation("area", lead=1, rows=2, move="all"),
+    Operation("bars", lead=1, move="all"),
+    Operation("robots", lead=2, move="angle"),
+    Operation("ellipses", lead=2, rows=5, move="angle"),
+    Operation("stems", lead=2, rows=2, move="all", loose=True),
+    Operation("image", lead=6, rows=1, move="all"),
     Operation("text"),
-    Operation("symbols"),
-    Operation("quills", lead=2, rows=3),
+    Operation("symbols", lead=2, move="all"),
+    Operation("quills", lead=2, rows=3, move="angle", loose=True),
     Operation("ticks"),
+    Operation("handle"),
+    Operation("part"),
 )
 NUMBER = {operation.name: k for k, operation in enumerate(OPERATIONS, start=1)}
 SHAPES = ("circle", "square", "diamond", "cross", "triangle", "plus", "star")

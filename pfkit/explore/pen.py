@@ -28,6 +28,9 @@ pixels. A view with equal scales is a map: what leaves it is cut off.
  13   symbols     shape, size, x.., y..            (shape: index into `SHAPES`)
  14   quills      length, size, x.., y.., theta..     (dots with a short tick for the heading)
  15   ticks       side (0 below, 1 left), values..
+ 16   handle      x, y, grip (1: drawn as a small ring), code points of its name..
+ 17   part        k, n  (what follows is the k-th of n pictures: side by side, or one below the
+                  other where there is no room)
 ====  ==========  ==================================================================================
 """
 
@@ -136,6 +139,25 @@ class Pen:
 
     def ticks(self, side: int, values: ArrayLike) -> None:
         self._add("ticks", "muted", side, values)
+
+    def handle(self, name: str, x: float, y: float, grip: bool = True) -> None:
+        """Something that can be dragged, in units of the present view; see `Scene.held`."""
+        self._add("handle", "ink", x, y, float(grip), [ord(c) for c in name])
+
+    def part(self, k: int, n: int) -> None:
+        """What follows belongs to the k-th of n pictures."""
+        self._add("part", "paper", k, n)
+
+
+def words(numbers: np.ndarray) -> str:
+    """The text that code points spell."""
+    return "".join(chr(int(c)) for c in numbers)
+
+
+def handles(drawing: np.ndarray) -> dict[str, tuple[float, float]]:
+    """What can be dragged in a drawing: name -> place, in units of the view that it is in."""
+    held = (d for op, _, d in records(drawing) if op == "handle")
+    return {words(d[3:]): (float(d[0]), float(d[1])) for d in held}
 
 
 def records(drawing: np.ndarray):

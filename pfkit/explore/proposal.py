@@ -15,7 +15,7 @@ import numpy as np
 
 import pfkit as pf
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Phases, Readouts, Scene
 
 X = np.linspace(-8, 8, 801)
 NEAR_BEST = 0.48  # of M: the predicted ESS of the best bell for two bumps is 0.486 M
@@ -82,12 +82,11 @@ class Proposal(Scene):
             log=True,
             help="Draws per tick.",
         ),
-        Control("point", "Drag the proposal", "point"),
     )
     panels: ClassVar[dict[str, Panel]] = {
         "proposal": Panel(
             "Target and proposal",
-            ("target", "tails", "mu", "sigma", "M", "point"),
+            ("target", "tails", "mu", "sigma", "M"),
             missions=(
                 Mission(
                     "the best bell",
@@ -132,20 +131,35 @@ class Proposal(Scene):
         self.estimates: list[float] = []
         self._sample()
 
-    def advance(self) -> None:
-        self._sample()
+    def phases(self) -> tuple[str, ...]:
+        return ("draw", "weigh")
+
+    def advance(self) -> Phases:
+        M = int(self.values["M"])
+        self._draw()
+        beyond = int((np.abs(self.x) > X[-1]).sum())
+        mean = f"their plain mean is {self.x.mean():.2f}"
+        yield "draw", f"Draw: {M} guesses from the proposal, {mean}, {beyond} beyond the edge."
+        self._weigh()
+        yield (
+            "weigh",
+            f"Weigh: the weighted mean is {self.estimates[-1]:.2f}, the true one {self.mean:.2f}; "
+            f"the effective size is {self.ess:.0f} of {M}.",
+        )
+
+    def held(self, name: str, x: float, y: float, touch: str) -> None:
+        if name == "centre":
+            self.turn("mu", x)
+        elif name == "width":
+            self.turn("sigma", abs(x - self.values["mu"]))
+        else:
+            super().held(name, x, y, touch)
 
     def changed(self, name: str, value: Any) -> None:
-        if name == "point":
-            self.values["mu"] = self.by_name["mu"].clean(round(value[0], 1))
-        if name in ("target", "mu", "sigma", "tails", "point"):
+        if name in ("target", "mu", "sigma", "tails"):
             self.estimates = []
         self._sample()
         self.tell(f"Effective size {self.ess:.0f} of {self.values['M']:.0f}.")
-
-    def handles(self) -> list[tuple[float, float]]:
-        v = self.values
-        return [(float(v["mu"]), float(self.q(np.array(v["mu"]))))]
 
     def p(self, x: np.ndarray) -> np.ndarray:
         """The target's density."""
@@ -164,12 +178,21 @@ class Proposal(Scene):
         return float(np.dot(w, mu))
 
     def _sample(self) -> None:
+        self._draw()
+        self._weigh()
+
+    def _draw(self) -> None:
+        """Draw from the proposal; every draw is worth the same so far."""
         v = self.values
         M = int(v["M"])
         noise = self.rng.standard_normal(M)
         if v["tails"] == "student":
             noise = noise / np.sqrt(self.rng.chisquare(3, M) / 3)
         self.x = v["mu"] + v["sigma"] * noise
+        self.log_w = np.full(M, -np.log(M))
+
+    def _weigh(self) -> None:
+        """Weigh the draws by target over proposal."""
         with np.errstate(divide="ignore"):
             log_w = np.log(self.p(self.x)) - np.log(self.q(self.x))
         self.log_w, _ = pf.normalise(log_w)
@@ -205,7 +228,10 @@ class Proposal(Scene):
         pen.area("exact", X, p, alpha=0.22)
         pen.line("exact", X, p, width=2)
         pen.line("dead reckoning", X, q, width=2.5, dash=6)
-        pen.symbols("dead reckoning", "circle", *np.transpose(self.handles()), size=12)
+        mu, sigma = self.values["mu"], self.values["sigma"]
+        pen.handle("centre", mu, float(self.q(np.array(mu))))
+        if mu + sigma < X[-1]:
+            pen.handle("width", mu + sigma, float(self.q(np.array(mu + sigma))))
         pen.text("ink", X[p.argmax()] + 0.7, 0.95 * p.max(), "target", size=12)
         pen.text("ink", X[q.argmax()] + 0.3, 0.6 * q.max(), "proposal", size=12)
         pen.view((0.02, 0.08, 0.74, 0.30), (-8, 8), (0, max(3.2 / w.size, 1.1 * w.max())))

@@ -3,9 +3,11 @@
 A recording is made by the scene itself, so it shows what the live run will do; because both start
 from the same seed, a reader who touches a control goes on from the very frame on the screen.
 
-To stay small, each record's numbers are rounded to 11 bits of their own range and stored as the
-differences of neighbours; particles are sorted first, because their order means nothing to a
-picture. `decode` in `web/render.js` is the inverse.
+A few frames a second are stored, and the page moves between them (`tween` in `web/render.js`). Each
+record's numbers are rounded to a thousandth of their range in the whole run and stored as
+differences: of neighbours in one frame, or from the frame before, whichever is smaller. Where the
+scene keeps a `lineage`, each particle starts from the one it descends from, so that copies part
+from their ancestor before the reader's eyes. `decode` in `web/render.js` is the inverse.
 """
 
 from __future__ import annotations
@@ -13,75 +15,135 @@ from __future__ import annotations
 import base64
 import json
 import zlib
+from collections import Counter
 from typing import Any
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pfkit.explore.host import report
-from pfkit.explore.operations import FEWEST, Operation, operation
+from pfkit.explore.operations import FEWEST, NUMBER, Operation, operation
+from pfkit.explore.pen import STYLES
 from pfkit.explore.scene import Scene
 
 LEVELS = 1000
+EXACT, BESIDE, BEFORE, DESCENT = range(4)  # how the numbers of a record are stored
+CLOUD = STYLES.index("particles")
+SORTED = (NUMBER["points"], NUMBER["quills"])
+Key = tuple[int, int, int]  # operation, style, how many of the kind came before in the frame
 
 
-def _pack(op: Operation, numbers: np.ndarray, floats: list[float], ints: list[np.ndarray]) -> None:
-    """Append one record's numbers: as float32, or as quantised differences if there are many."""
-    if not op.rows or numbers.size - op.lead < FEWEST:
-        floats.extend(numbers)
-        return
-    floats.extend(numbers[: op.lead])
-    rows = numbers[op.lead :].reshape(op.rows, -1)
-    if op.name in ("points", "quills"):
-        rows = rows[:, np.argsort(np.round(rows[0], 2) * 1e4 + rows[1], kind="stable")]
-    for row in rows:
-        low, high = float(row.min()), float(row.max())
-        scale = (high - low) / LEVELS or 1.0
-        floats.extend((low, scale))
-        level = np.round((row - low) / scale).astype(np.int16)
-        ints.append(np.diff(level, prepend=np.int16(0)))
-
-
-def pack(drawing: np.ndarray) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
-    """Split a drawing into (heads int32, floats float32, differences int16)."""
-    heads: list[int] = []
-    floats: list[float] = []
-    ints: list[np.ndarray] = []
-    i = 0
+def split(drawing: np.ndarray) -> list[tuple[Key, np.ndarray]]:
+    """The records of a drawing, each with a key that it keeps from frame to frame."""
+    seen: Counter[tuple[int, int]] = Counter()
+    out, i = [], 0
     while i < drawing.size:
         op, style, n = (int(v) for v in drawing[i : i + 3])
-        heads.extend((op, style, n))
-        _pack(operation(op), drawing[i + 3 : i + 3 + n], floats, ints)
+        out.append(((op, style, seen[op, style]), drawing[i + 3 : i + 3 + n]))
+        seen[op, style] += 1
         i += 3 + n
-    joined = np.concatenate(ints) if ints else np.empty(0, np.int16)
-    return np.array(heads, np.int32), np.array(floats, np.float32), joined
+    return out
+
+
+def _rows(op: Operation, numbers: np.ndarray) -> np.ndarray | None:
+    """The numbers to be rounded, in their rows; None if the record is stored exactly."""
+    if not op.rows or numbers.size - op.lead < FEWEST or not np.isfinite(numbers).all():
+        return None
+    return numbers[op.lead :].reshape(op.rows, -1)
+
+
+class Packer:
+    """Turns the frames of one run into three streams of numbers."""
+
+    def __init__(self, frames: list[list[tuple[Key, np.ndarray]]]):
+        self.ranges: dict[tuple[Key, int], tuple[float, float]] = {}
+        for frame in frames:
+            for key, numbers in frame:
+                rows = _rows(operation(key[0]), numbers)
+                for k, row in enumerate(rows if rows is not None else ()):
+                    low, high = self.ranges.get((key, k), (np.inf, -np.inf))
+                    self.ranges[key, k] = min(low, float(row.min())), max(high, float(row.max()))
+        self.before: dict[Key, NDArray[np.int64]] = {}
+        self.heads: list[int] = []
+        self.floats: list[float] = []
+        self.ints: list[NDArray[np.int64]] = []
+
+    def add(self, frame: list[tuple[Key, np.ndarray]], lineage: NDArray[np.int64] | None) -> int:
+        """Append one frame; returns the number of particles whose descent is stored with it."""
+        known = lineage is not None and bool(self.before)
+        if known and lineage is not None:
+            self.ints.append(np.diff(lineage, prepend=0))
+        for key, numbers in frame:
+            op = operation(key[0])
+            rows = _rows(op, numbers)
+            if rows is None:
+                self.heads.extend((key[0], key[1], numbers.size, EXACT))
+                self.floats.extend(numbers)
+                continue
+            self.floats.extend(numbers[: op.lead])
+            mode = self._add_rows(key, rows, lineage if known and key[1] == CLOUD else None)
+            self.heads.extend((key[0], key[1], numbers.size, mode))
+        return lineage.size if known and lineage is not None else 0
+
+    def _add_rows(self, key: Key, rows: np.ndarray, lineage: NDArray[np.int64] | None) -> int:
+        """Round, choose the smaller differences, keep the levels for the next frame."""
+        levels = np.stack([self._levels(key, k, row) for k, row in enumerate(rows)])
+        before, beside = self.before.get(key), levels
+        if key[0] in SORTED and lineage is None:
+            beside = levels[:, np.lexsort((levels[1], levels[0] // 8))]
+        mode, differences = BESIDE, np.diff(beside, axis=1, prepend=0)
+        if before is not None and before.shape == levels.shape:
+            if lineage is not None and lineage.size == levels.shape[1]:
+                own = np.arange(lineage.size)
+                before = before[:, np.where(lineage < 0, own, lineage)]
+            change = levels - before
+            if lineage is not None or np.abs(change).sum() <= np.abs(differences).sum():
+                mode, differences, beside = BEFORE, change, levels
+                mode = DESCENT if lineage is not None else BEFORE
+        elif lineage is not None:
+            differences, beside = np.diff(levels, axis=1, prepend=0), levels
+        self.before[key] = beside
+        self.ints.append(differences.ravel())
+        return mode
+
+    def _levels(self, key: Key, k: int, row: np.ndarray) -> NDArray[np.int64]:
+        low, scale = self.scale(key, k)
+        return np.round((row - low) / scale).astype(np.int64)
+
+    def scale(self, key: Key, k: int) -> tuple[float, float]:
+        low, high = self.ranges[key, k]
+        return low, (high - low) / LEVELS or 1.0
 
 
 def record(scene: Scene, steps: int | None = None, every: int | None = None) -> dict[str, Any]:
     """Run `scene` from its seed and return the recording as plain data (JSON-able)."""
     steps, every = steps or scene.record_steps, every or scene.record_every
     scene.reset(scene.seed)
-    heads, floats, ints, frames = [], [], [], []
+    drawings, lineages, told = [], [], []
     for tick in range(steps + 1):
         if tick % every == 0:
-            drawing, readouts = scene.frame()
-            h, f, d = pack(drawing)
-            heads.append(h)
-            floats.append(f)
-            ints.append(d)
-            told = report(scene, {k: _short(v) for k, v in readouts.items()})
-            handles = [[round(x, 2), round(y, 2)] for x, y in told["handles"]]
-            frames.append([h.size, f.size, d.size, scene.ticks, told["readouts"], handles])
+            drawings.append(split(scene.frame()[0]))
+            lineages.append(scene.lineage)
+            if scene.lineage is not None:
+                scene.lineage = np.arange(scene.lineage.size)
+            told.append(report([scene]))
         if tick < steps:
             scene.step()
+    packer, frames = Packer(drawings), []
+    for drawing, lineage, said in zip(drawings, lineages, told, strict=True):
+        descent = packer.add(drawing, lineage)
+        readouts = {k: _short(v) for k, v in said["readouts"][0].items()}
+        sentence = said["phase"]["sentences"][0]
+        frames.append([len(drawing), descent, said["ticks"], readouts, sentence])
     return {
         "about": scene.describe(),
         "values": scene.values,
         "every": every,
-        "levels": LEVELS,
+        "ranges": [[*key, k, *packer.scale(key, k)] for key, k in packer.ranges],
         "frames": frames,
-        "heads": _text(np.concatenate(heads).astype("<i4")),
-        "floats": _text(np.concatenate(floats).astype("<f4")),
-        "deltas": _text(np.concatenate(ints).astype("<i2")),
+        "heads": _text(np.array(packer.heads, "<i4")),
+        "floats": _text(np.array(packer.floats, "<f4")),
+        "deltas": _text(np.concatenate([*packer.ints, np.empty(0)]).astype("<i2")),
     }
 
 

@@ -1,38 +1,80 @@
-"""What every explorable is: a *scene*.
+"""What every explorable is: a *scene*. This page is the contract.
 
-A scene is a small world computed in pure NumPy. It declares its controls, and then answers four
-calls; a front end (the page, or a notebook) needs no other knowledge of it:
+A scene is a small world computed in pure NumPy. A front end (the page, or a notebook) knows it by
+six calls, and needs no other knowledge of it:
 
-    scene.reset(seed)          start again: same seed, same history
-    scene.set(name, value)     move one control
-    scene.step()               let one tick pass
-    scene.frame()              (flat float32 drawing, named readouts)
+    scene.reset(seed)                    start again: same seed, same history
+    scene.set(name, value)               move one control
+    scene.hold(name, x, y, touch)        the reader's hand on something in the picture
+    scene.step()                         let one tick pass
+    scene.to_phase(n)                    go on to the end of a phase, at most n ticks
+    scene.frame()                        (flat float32 drawing, named readouts)
 
-The drawing is a list of primitives in one array (`pfkit.explore.pen` gives its layout), so one
-renderer draws every scene. Readouts are numbers or short texts: what a picture shows, a reader
-who cannot see it can still read.
+**Time.** A tick is the smallest time a scene knows, `rate` of them make a second. `advance` is one
+tick, written as a generator: it does its work, and at the end of each phase it yields the phase's
+name and *one sentence made from the numbers*:
 
-A scene can have several *panels*: named ways of showing the same world, each with its own
-controls, starting values and three guided missions.
+    def advance(self):
+        self.bel = pf.predict(self.bel, self.u, self.motion, self.rng)
+        yield "predict", f"Predict: the spread went from {before:.2f} to {self.spread:.2f} m."
+        ...
+        yield "weigh", f"Weigh: {light} of {M} particles are nearly weightless."
 
-A scene never draws, sleeps or reads a clock, and takes all its chance from one seeded generator.
-So a run is a value: scene, panel, seed and the list of control changes name it completely.
+`phases()` names them in their order. A phase may last several ticks (most ticks of *Drive and
+localise* only predict, and end no phase), but each must end in the same ticks whatever the controls
+are, with a sentence that says so if nothing was done: two worlds side by side keep step by it. The
+sentence stands beside the picture and is what a screen reader says.
+`tell` adds what is rare and must not be missed (found, kidnapped).
+
+**Picture.** `draw` puts primitives into one array (`pfkit.explore.pen` gives its layout), so one
+renderer draws every scene. `pen.handle(name, x, y)` there makes a place that can be dragged, in the
+units of the view that it stands in: a landmark, the rim of a noise ellipse, a threshold in a chart.
+What the hand does arrives in `held(name, x, y, touch)`, touch being one of `TOUCHES`; name "" is
+the empty floor of the first view. A handle that moves a control calls `self.turn(name, value)`. The
+keyboard takes hold of the same handles.
+Readouts are numbers or short texts: what a picture shows, a reader who does not see it can read.
+
+**Panels** are named ways of showing the same world. A panel has at most five `controls` beside the
+picture; the rest are `more`, folded away. It has three missions, and a `score`: the readout that is
+compared over 100 seeds, after so many ticks.
+
+**Copies.** A front end keeps copies of the last minute, to go back in time, and runs two scenes on
+one seed, side by side. Attributes that a scene only replaces and never changes in place can be
+named in `shared`: copies then share them, and are cheap. For a recorded run, which stores a few
+frames a second and moves between them, a scene may keep `lineage`: for each particle of the cloud
+that it draws, which one it was in the last recorded frame (-1: none).
+
+A scene never draws on a screen, sleeps or reads a clock, and takes all its chance from one seeded
+generator. So a run is a value: scene, panel, seed and the list of what was done name it completely.
 """
 
 from __future__ import annotations
 
+import copy
 from collections import Counter
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from typing import Any, ClassVar, Literal
 
 import numpy as np
+from numpy.typing import NDArray
 
 from pfkit.errors import ParameterError
 from pfkit.explore.pen import Pen
 
-Kind = Literal["range", "choice", "toggle", "button", "point"]
+Kind = Literal["range", "choice", "toggle", "button"]
 Readouts = dict[str, float | str]
+Phases = Iterator[tuple[str, str]]  # name of a phase that has ended, and its sentence
+# A tap is pressed and released in one place; called off: the touch became something else.
+TOUCHES = ("press", "drag", "release", "tap", "cancel")
+MOST_CONTROLS = 5  # beside the picture
+
+
+def finite(name: str, value: Any) -> float:
+    """The value as a float; `ParameterError` if it is no finite number."""
+    if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
+        raise ParameterError(f"{name} = {value!r}: give a finite number")
+    return float(value)
 
 
 @dataclass(frozen=True)
@@ -44,9 +86,8 @@ class Control:
     name, label, help
         Identifier, visible name, and one sentence that says what it does.
     kind
-        "range" (number in [lo, hi]), "choice" (one of `choices`), "toggle" (bool), "button"
-        (an event, no value), "point" (x, y, phase in data units of the first view; phase 0 press,
-        1 drag, 2 release, 3 a tap: pressed and released in one place, 4 called off).
+        "range" (number in [lo, hi]), "choice" (one of `choices`), "toggle" (bool), or "button"
+        (an event, no value).
     keys
         Keyboard: maps a key name of the browser ("ArrowUp", "k") to the value that it sets. A range
         falls back to its default on release, so that keys act like a joystick.
@@ -71,7 +112,7 @@ class Control:
     def clean(self, value: Any) -> Any:
         """The value this control can really take; `ParameterError` if it cannot take this one."""
         if self.kind == "range":
-            return float(np.clip(self._number(value), self.lo, self.hi))
+            return float(np.clip(finite(self.name, value), self.lo, self.hi))
         if self.kind == "choice":
             allowed = [key for key, _ in self.choices]
             if value not in allowed:
@@ -81,16 +122,7 @@ class Control:
             if not isinstance(value, bool):
                 raise ParameterError(f"{self.name} = {value!r}: give true or false")
             return value
-        if self.kind == "point":
-            if not isinstance(value, list | tuple) or len(value) != 3:
-                raise ParameterError(f"{self.name} = {value!r}: give (x, y, phase)")
-            return tuple(self._number(v) for v in value)
         return None
-
-    def _number(self, value: Any) -> float:
-        if isinstance(value, bool) or not isinstance(value, int | float) or not np.isfinite(value):
-            raise ParameterError(f"{self.name} = {value!r}: give a finite number")
-        return float(value)
 
     def describe(self) -> dict[str, Any]:
         """The control as plain data, for a front end."""
@@ -129,23 +161,47 @@ class Gauge:
 
 
 @dataclass(frozen=True)
+class Score:
+    """What 100 seeds are compared by.
+
+    Parameters
+    ----------
+    readout : str
+        Its name.
+    ticks : int
+        When it is read.
+    limit : float
+        Above it a run counts as failed.
+    moves : tuple of (tick, control, value)
+        What happens in every run on the way, such as a kidnap.
+    """
+
+    readout: str
+    ticks: int
+    limit: float
+    moves: tuple[tuple[int, str, Any], ...] = ()
+
+
+@dataclass(frozen=True)
 class Panel:
     """One way of showing a scene: which controls, from which values, with which missions."""
 
     title: str
-    controls: tuple[str, ...]
+    controls: tuple[str, ...]  # beside the picture, at most five
+    more: tuple[str, ...] = ()  # folded away
     values: Mapping[str, Any] = field(default_factory=dict)
     missions: tuple[Mission, ...] = ()
     alt: str = ""
     record: tuple[int, int] | None = None  # ticks, and ticks per frame, of its recorded run
+    score: Score | None = None
 
 
 class Scene:
     """Base of all scenes: keeps the values, the seed and the generator; subclasses keep the world.
 
-    Subclasses define the class attributes below and `start`, `advance`, `draw`, `readouts`, and
-    may define `changed(name, value)` for what must happen at once when a control moves, and
-    `handles` for what a finger can take hold of.
+    Subclasses define the class attributes below and `start`, `phases`, `advance`, `draw`,
+    `readouts`, and may define `changed(name, value)` for what must happen at once when a control
+    moves, and `held` for what a hand in the picture does.
 
     Missions are judged from `watch` on, which a front end calls when the reader takes over. A deed
     counts when it is done, not because it is so already, or because a new seed makes it so. What
@@ -161,6 +217,9 @@ class Scene:
     record_steps: int = 240  # length of the recorded run, in ticks
     record_every: int = 3  # ticks between two of its frames
     still_at: ClassVar[int] = 0  # tick that the still shows; 0: the end of the recorded run
+    floor: ClassVar[bool] = False  # a press on the floor does something
+    shared: ClassVar[tuple[str, ...]] = ()  # attributes that copies share
+    lineage: NDArray[np.int64] | None = None
 
     def __init__(self, panel: str | None = None, seed: int = 1):
         panel = panel or next(iter(self.panels))
@@ -172,8 +231,9 @@ class Scene:
         if self.panel.record:
             self.record_steps, self.record_every = self.panel.record
         self.by_name = {c.name: c for c in self.all_controls}
+        self._tick: Phases | None = None  # the tick that has begun, if one has
         self.values: dict[str, Any] = {
-            c.name: c.default for c in self.all_controls if c.kind not in ("button", "point")
+            c.name: c.default for c in self.all_controls if c.kind != "button"
         }
         self.values.update(self.panel.values)
         self.tried: Counter[tuple[str, Any]] = Counter()  # ticks that each value has stood
@@ -193,17 +253,20 @@ class Scene:
         if isinstance(seed, bool) or not isinstance(seed, int) or not 0 <= seed < 2**31:
             raise ParameterError(f"seed = {seed!r}: give a whole number from 0 to 2147483647")
         self.seed, self.ticks = seed, 0
+        self._tick = None
+        self.ended, self.phase, self.sentence = 0, "", ""  # phases so far; the last one
         self.rng = np.random.default_rng(seed)
         self.start()
         self._already = self._deeds()
 
     def set(self, name: str, value: Any) -> None:
-        """Move the control `name` to `value` (clipped into its range)."""
+        """Move the control `name` to `value` (clipped into its range), between two ticks."""
         if name not in self.by_name:
             raise ParameterError(f"{self.name} has no control {name!r}")
         control = self.by_name[name]
         value = control.clean(value)
-        if control.kind not in ("button", "point"):
+        self.finish()
+        if control.kind != "button":
             self.values[name] = value
         if control.live:
             self.changed(name, value)
@@ -213,12 +276,56 @@ class Scene:
             self._already = already
         self._judge()
 
+    def turn(self, name: str, value: float) -> None:
+        """A handle moves the control `name`: to the nearest step that it can take."""
+        control = self.by_name[name]
+        self.set(name, control.clean(round(round(value / control.step) * control.step, 9)))
+
+    def hold(self, name: str, x: float, y: float, touch: str) -> None:
+        """The reader's hand on the handle `name`, or on the floor (""), at (x, y)."""
+        if touch not in TOUCHES:
+            raise ParameterError(f"touch = {touch!r}: give one of {TOUCHES}")
+        self.finish()
+        self.held(str(name), finite("x", x), finite("y", y), touch)
+        self._judge()
+
     def step(self) -> None:
-        """Let one tick pass."""
-        self.advance()
+        """Let one tick pass, or end the one that has begun."""
+        self._tick = self._tick or self.advance()
+        for ended in self._tick:
+            self._note(*ended)
+        self._end_tick()
+
+    def finish(self) -> None:
+        """End the tick that has begun, if one has."""
+        if self._tick is not None:
+            self.step()
+
+    def to_phase(self, most: int) -> bool:
+        """Go on until a phase ends, for at most so many ticks; False if none did."""
+        for _ in range(most):
+            self._tick = self._tick or self.advance()
+            for ended in self._tick:
+                self._note(*ended)
+                return True
+            self._end_tick()
+        return False
+
+    def _note(self, phase: str, sentence: str) -> None:
+        self.ended += 1
+        self.phase, self.sentence = phase, sentence
+
+    def _end_tick(self) -> None:
+        self._tick = None
         self.ticks += 1
         self.tried.update(self.values.items())
         self._judge()
+
+    def copy(self) -> Scene:
+        """This scene once more, between two ticks; what `shared` names is not copied."""
+        self.finish()
+        kept = [self.panel, self.by_name, *(getattr(self, name) for name in self.shared)]
+        return copy.deepcopy(self, {id(thing): thing for thing in kept})
 
     def spent(self, name: str, accept: Callable[[Any], bool]) -> int:
         """Ticks that the reader has seen with an accepted value of the control `name`."""
@@ -252,10 +359,14 @@ class Scene:
             "seed": self.seed,
             "units": {name: gauge.unit for name, gauge in self.gauges.items()},
             "decimals": {name: gauge.decimals for name, gauge in self.gauges.items()},
+            "phases": list(self.phases()),
             "controls": [
-                {**self.by_name[n].describe(), "default": self.values.get(n)}
-                for n in self.panel.controls
+                {**self.by_name[n].describe(), "default": self.values.get(n), "main": main}
+                for names, main in ((self.panel.controls, True), (self.panel.more, False))
+                for n in names
             ],
+            "floor": self.floor,
+            "score": self.panel.score and self.panel.score.readout,
             "missions": [{"deed": m.deed, "text": m.text} for m in self.panel.missions],
         }
 
@@ -272,15 +383,21 @@ class Scene:
     def start(self) -> None:
         raise NotImplementedError
 
-    def advance(self) -> None:
+    def phases(self) -> tuple[str, ...]:
+        """Names of the phases, in their order."""
+        raise NotImplementedError
+
+    def advance(self) -> Phases:
+        """One tick; yields (name, sentence) at the end of each phase."""
         raise NotImplementedError
 
     def changed(self, name: str, value: Any) -> None:
         """A live control moved. Scenes that read `self.values` each tick need nothing here."""
 
-    def handles(self) -> list[tuple[float, float]]:
-        """What can be taken hold of and dragged: places in data units of the first view."""
-        return []
+    def held(self, name: str, x: float, y: float, touch: str) -> None:
+        """The hand did something to the handle `name`, or to the floor."""
+        if name:
+            raise ParameterError(f"{self.name} has nothing called {name!r} that can be held")
 
     def draw(self, pen: Pen) -> None:
         raise NotImplementedError

@@ -10,6 +10,7 @@ from html import escape
 
 import numpy as np
 
+from pfkit.errors import ParameterError
 from pfkit.explore.operations import SHAPES
 from pfkit.explore.pen import records
 from pfkit.palette import COLOURS
@@ -51,6 +52,13 @@ class Still:
                 f'<rect x="{left:.1f}" y="{bottom - h:.1f}" width="{w:.1f}" height="{h:.1f}" '
                 f'fill="none" stroke="{LIGHT["grid"]}"/>'
             )
+
+    def part(self, d: np.ndarray, colour: str) -> None:
+        """A still shows one picture; of two, a still of each."""
+        raise ParameterError("a still shows one world: draw each by itself")
+
+    def handle(self, d: np.ndarray, colour: str) -> None:
+        """Nothing can be dragged in a still."""
 
     def close(self) -> None:
         """End the group that is cut at the edge of the last view."""

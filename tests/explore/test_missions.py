@@ -12,6 +12,7 @@ import pytest
 
 from pfkit.explore import SCENES, scene
 from pfkit.explore.host import Host
+from pfkit.explore.pen import handles
 
 PANELS = [(name, panel) for name in SCENES for panel in type(scene(name)).panels]
 KIDNAP = (300, ("kidnap", True))
@@ -70,10 +71,10 @@ def corner(s):
     """Drag the two landmarks until the robot sees them at a right angle, from one metre."""
     s.set("autopilot", False)
     x, y, _ = s.truth
-    for landmark, place in ((0, (x + 1, y)), (1, (x, y + 1))):
-        s.set("point", (*s.landmarks[:, landmark], 0))
-        s.set("point", (*place, 1))
-        s.set("point", (*place, 2))
+    for name, place in (("landmark 1", (x + 1, y)), ("landmark 2", (x, y + 1))):
+        s.hold(name, *handles(s.frame()[0])[name], "press")
+        s.hold(name, *place, "drag")
+        s.hold(name, *place, "release")
 
 
 def match(s):
@@ -128,7 +129,7 @@ def test_what_is_so_already_is_no_deed(name, panel):
     """The reader takes over anywhere in the recorded run: at that moment nothing is achieved."""
     host = Host()
     host.open("k", name, panel, 1)
-    steps = host.scenes["k"].record_steps
+    steps = host.runs["k"].worlds[0].record_steps
     for ticks in (0, steps // 3, steps):
         operations = [["reset", 1], ["step", ticks], ["watch"]]
         told = json.loads(host.do("k", json.dumps(operations))[1])

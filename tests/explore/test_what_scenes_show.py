@@ -10,7 +10,7 @@ from pfkit.explore import SCENES, scene
 from pfkit.explore.banana import energy_distance
 from pfkit.explore.camera import ease, say_outside, wanted
 from pfkit.explore.comb import FIVE, WEIGHTS, teeth, wheel
-from pfkit.explore.pen import Pen, records
+from pfkit.explore.pen import Pen, handles, records, words
 
 PANELS = [(name, panel) for name in SCENES for panel in type(scene(name)).panels]
 
@@ -202,15 +202,13 @@ def test_switches_take_the_filter_apart():
 
 def test_landmarks_can_be_moved_added_and_removed():
     s = scene("drive", "sensing", 1)
-    s.set("hand", "landmark")
     s.set("add", True)
     assert s.landmarks.shape[1] == 3
     for _ in range(5):
         s.set("remove", True)
     assert s.landmarks.shape[1] == 1  # the last one stays
-    x, y = s.landmarks[:, 0]
-    s.set("point", (x, y, 0))
-    s.set("point", (4.0, 4.0, 1))
+    s.hold("landmark 1", *s.landmarks[:, 0], "press")
+    s.hold("landmark 1", 4.0, 4.0, "drag")
     assert s.landmarks[:, 0] == pytest.approx([4, 4]) and isinstance(s.world, pf.LandmarkMap)
 
 
@@ -233,7 +231,8 @@ def test_the_grid_does_not_touch_the_cloud():
     without.grid = None
     for _ in range(5):
         with_grid.step()
-        super(type(without), without).advance()
+        for _ in super(type(without), without).advance():
+            pass
         without.ticks += 1
     assert with_grid.bel.state == pytest.approx(without.bel.state)
 
@@ -259,6 +258,74 @@ def test_the_robot_stays_out_of_walls():
             assert s.world.contains(*s.truth[:2])
 
 
+# ---- handles -----------------------------------------------------------------------------------
+
+
+def drag(s, name, to):
+    s.hold(name, *handles(s.frame()[0])[name], "press")
+    s.hold(name, *to, "drag")
+    s.hold(name, *to, "release")
+
+
+def test_a_robot_that_is_carried_and_put_down_is_kidnapped():
+    s = scene("drive", "kidnap", 1)
+    s.set("autopilot", False)
+    before = s.truth
+    s.hold("robot", *before[:2], "press")
+    s.hold("robot", 8.0, 6.0, "drag")
+    assert not s.kidnapped and s.truth[:2] == pytest.approx([8, 6])
+    s.hold("robot", 8.0, 6.0, "cancel")
+    assert not s.kidnapped and s.truth == pytest.approx(before)
+    drag(s, "robot", (8.0, 6.0))
+    assert s.kidnapped and s.truth[:2] == pytest.approx([8, 6])
+    assert any("carried off" in w for w in s.news())
+
+
+@pytest.mark.parametrize("seed", (1, 2, 3))
+def test_the_rim_of_the_noise_and_the_threshold_are_controls(seed):
+    s = scene("drive", "localise", seed)
+    r, phi = np.hypot(*(s.landmarks[:, 0] - s.truth[:2])), s._from_first(*s.landmarks[:, 0])
+    assert phi == pytest.approx((0, 0))
+    rim = handles(s.frame()[0])["range noise"]
+    assert s._from_first(*rim)[0] == pytest.approx(-2 * s.values["sigma_r"], abs=1e-5)
+    toward = (s.truth[:2] - s.landmarks[:, 0]) / r
+    drag(s, "range noise", s.landmarks[:, 0] + 1.2 * toward)
+    assert s.values["sigma_r"] == pytest.approx(0.6)
+    drag(s, "threshold", (3.0, 0.83))
+    assert s.values["threshold"] == 0.85
+
+
+def test_a_press_on_the_floor_is_where_the_robot_drives_to():
+    s = scene("drive", "localise", 1)
+    s.hold("", 5.0, 4.0, "tap")
+    for _ in range(600):
+        s.step()
+        if s.goal is None:
+            break
+    assert np.hypot(*(s.truth[:2] - (5, 4))) < 0.5
+
+
+def test_a_proposal_is_held_at_its_centre_and_its_width():
+    s = scene("proposal", seed=1)
+    drag(s, "centre", (1.04, 0.1))
+    drag(s, "width", (2.5, 0.1))
+    assert s.values["mu"] == 1.0 and s.values["sigma"] == 1.5
+
+
+def test_a_phase_of_the_drive_is_counted_from_its_particles():
+    s = scene("drive", "localise", 2)
+    s.to_phase(99)
+    assert s.phase == "predict"
+    before = s.bel.state.copy()
+    s.to_phase(1)
+    light = int((np.exp(s.bel.log_w) < 0.1 / s.bel.M).sum())
+    assert s.phase == "weigh" and f"{light} of {s.bel.M} particles" in s.sentence
+    s.to_phase(1)
+    distinct = np.unique(s.bel.state, axis=1).shape[1]
+    assert s.phase == "resample" and f"descend from {distinct}." in s.sentence
+    assert s.bel.state == pytest.approx(before[:, s.lineage])
+
+
 # ---- the belief stays in sight, and is told ----------------------------------------------------
 
 
@@ -266,12 +333,8 @@ def first_view(drawing):
     return next(numbers for op, _, numbers in records(drawing) if op == "view")
 
 
-def words(drawing):
-    return [
-        "".join(chr(int(c)) for c in numbers[4:])
-        for op, _, numbers in records(drawing)
-        if op == "text"
-    ]
+def texts(drawing):
+    return [words(numbers[4:]) for op, _, numbers in records(drawing) if op == "text"]
 
 
 def test_after_a_kidnap_the_belief_is_in_sight_or_pointed_at():
@@ -287,7 +350,7 @@ def test_after_a_kidnap_the_belief_is_in_sight_or_pointed_at():
             drawing, _ = s.frame()
             (x0, x1, y0, y1), (x, y, _) = first_view(drawing)[4:8], s.estimate
             outside = not (x0 <= x <= x1 and y0 <= y <= y1)
-            assert outside == any("outside" in w for w in words(drawing))
+            assert outside == any("outside" in w for w in texts(drawing))
             pointed += outside
             left += not (s.bounds[0] <= x <= s.bounds[1] and s.bounds[2] <= y <= s.bounds[3])
     assert left > 10, "no cloud left the arena: the test shows nothing"
@@ -313,7 +376,7 @@ def test_what_is_outside_is_named_with_its_distance(at):
     pen, view = Pen(), (0.0, 10.0, 0.0, 8.0)
     say_outside(pen, view, np.array([*at, 0.0]))
     away = np.hypot(at[0] - np.clip(at[0], 0, 10), at[1] - np.clip(at[1], 0, 8))
-    (said,) = words(pen.array())
+    (said,) = texts(pen.array())
     assert said == ("belief just outside" if away < 1 else f"belief {away:.0f} m outside")
     for op, _, d in records(pen.array()):
         x, y = d[1:].reshape(4, 2)[[0, 1]] if op == "segments" else (d[0], d[1])

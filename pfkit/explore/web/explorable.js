@@ -1,41 +1,22 @@
-/* The frame around a scene: stage, transport, readouts, controls, missions.
+/* The frame around a scene: picture, sentence, time, controls, readouts, missions.
    It knows nothing about any algorithm. It plays a recorded run until the reader touches something,
    then asks an *engine* (Python in a worker, or a Jupyter kernel) to go on:
-     engine.open(key, name, panel, seed) -> description
-     engine.run(key, operations)         -> { drawing, report, ms }
-   A classic script; adds PF.Explorable. */
+     engine.open(key, name, panel, seed)  -> description
+     engine.run(key, operations)          -> { drawing, report, ms }
+     engine.many(key, ticks, again)       -> { drawing, report, ms }
+   The operations are those of pfkit/explore/host.py. A panel without controls is a film: picture,
+   sentence, play and scrub. A classic script; adds PF.Explorable. */
 (function (PF) {
   "use strict";
 
+  const { el, written } = PF;
   const still = () => matchMedia("(prefers-reduced-motion: reduce)").matches;
+  const PAUSE = 2500; // ms between two sentences about what must not be missed
+  const QUIET = 5000; // ms of a run after which the last phase is told, if nothing happened
+  const LEAST = 150; // px: no picture is made lower to fit the screen
+  const MARGIN = 24; // px above and below all that
+  const MOST_REPLAY = 20000; // ticks
   let count = 0;
-
-  function el(tag, attributes, ...children) {
-    const e = document.createElement(tag);
-    for (const [k, v] of Object.entries(attributes || {})) {
-      if (k.startsWith("on")) e.addEventListener(k.slice(2), v);
-      else if (v === true) e.setAttribute(k, "");
-      else if (v !== false && v != null) e.setAttribute(k, v);
-    }
-    e.append(...children.filter((c) => c != null));
-    return e;
-  }
-  PF.el = el;
-
-  const PAUSE = 2500; // ms between two sentences of a run
-  const SILENCE = 20000; // ms of a run after which the readouts are said, if nothing happened
-
-  /* A number with the decimals it always has, whatever its size. */
-  function written(value, decimals) {
-    if (typeof value !== "number") return value;
-    const text = value.toFixed(decimals);
-    if (Number(text) === 0) return text.replace("-", "");
-    const [whole, part] = text.split(".");
-    const grouped = Math.abs(value) < 10000 ? whole : whole.replace(/\B(?=(\d{3})+$)/g, "\u2009");
-    return (part ? `${grouped}.${part}` : grouped).replace("-", "\u2212");
-  }
-
-  PF.written = written;
 
   PF.Explorable = class {
     /* options: about (description), seed, recording (or null), engine() -> promise of an engine,
@@ -44,10 +25,12 @@
       this.root = root;
       this.o = options;
       this.about = options.about;
+      this.film = !this.about.controls.length;
       this.key = options.key || "x" + ++count;
       this.seed = options.seed;
       this.values = { ...options.values };
       this.initial = { ...this.values };
+      this.compared = null; // { name, value } of the second world's control
       this.history = [];
       this.pending = [];
       this.ticks = 0;
@@ -58,6 +41,7 @@
       this.fps = 0;
       this.frames = [];
       this.at = 0;
+      this.position = 0; // in the recording, in frames
       this.news = [];
       this.saidAt = 0;
       this.build();
@@ -69,19 +53,51 @@
 
     /* ---- what the reader sees ------------------------------------------------------------- */
     build() {
-      const a = this.about, r = this.root, id = "pf-" + this.key;
-      r.classList.add("pf-explorable", "pf-upgraded");
+      const a = this.about, id = "pf-" + this.key;
+      this.root.classList.add("pf-explorable", "pf-upgraded");
+      this.root.classList.toggle("pf-film", this.film);
       this.status = el("p", { class: "pf-status", role: "status", "aria-live": "polite" });
       this.canvas = el("canvas", {
-        class: "pf-canvas", tabindex: "0", role: "application", "aria-label": a.alt || a.title,
-        "aria-describedby": id + "-keys",
+        class: "pf-canvas", tabindex: "0", role: this.film ? "img" : "application",
+        "aria-label": a.alt || a.title, "aria-describedby": this.film ? null : id + "-keys",
         onkeydown: (e) => this.keydown(e), onkeyup: (e) => this.keyup(e),
         onblur: () => this.release(),
       });
       this.renderer = new PF.Renderer(this.canvas, a.size);
       this.problem = el("div", { class: "pf-problem", role: "alert", hidden: true });
-      this.playButton = el("button", { type: "button", class: "pf-play",
-        onclick: () => this.setPlaying(!this.playing) });
+      this.stage = el("div", { class: "pf-stage" }, this.canvas, this.problem);
+      this.transport = new PF.Transport(id, a.rate, {
+        play: () => this.setPlaying(!this.playing),
+        phase: (control) => this.nextPhase(control),
+        speed: (pick, control) => { if (pick === "phase") this.touch(undefined, control); },
+        scrub: (tick, control) => this.scrub(tick, control),
+      }, this.film);
+      this.chips = el("ol", { class: "pf-phases", "aria-hidden": "true" },
+        ...(a.phases.length > 1 ? a.phases.map((name) => el("li", {}, name)) : []));
+      const says = el("div", { class: "pf-says" }, this.film ? null : this.chips, this.status);
+      this.main = el("div", { class: "pf-controls pf-main" });
+      this.inputs = {};
+      this.missions = new PF.Missions(a.missions, `${a.name}/${a.panel}`, (text) => this.hear(text));
+      if (!this.film) {
+        this.hand = new PF.Hand(this.canvas, this.renderer, {
+          act: (...hold) => this.hold(...hold), floor: a.floor, say: (text) => this.say(text) });
+      }
+      const see = el("div", { class: "pf-see" }, this.stage, says, this.transport.root,
+        this.transport.late);
+      this.root.replaceChildren(el("p", { class: "pf-title" }, a.title),
+        el("div", { class: "pf-bench" }, see, this.film ? null : this.main),
+        ...(this.film ? [] : this.below(id)));
+      this.say(this.mode === "idle" ? "Ready to start." : this.film ? ""
+        : "A recorded run. Touch anything and Python goes on from here.");
+      this.status.setAttribute("aria-live", this.mode === "recorded" ? "off" : "polite");
+      this.setPlaying(this.playing);
+      this.theme();
+    }
+
+    /* Tools, more controls, readouts, missions. */
+    below(id) {
+      const a = this.about, more = el("div", { class: "pf-controls" });
+      for (const c of a.controls) (c.main ? this.main : more).append(this.control(c));
       this.seedInput = el("input", { type: "number", min: 0, max: 2147483647, step: 1,
         value: this.seed, onchange: () => this.restart(this.readSeed(), this.seedInput) });
       this.timing = el("span", { class: "pf-timing", hidden: true });
@@ -89,43 +105,37 @@
         el("button", { type: "button", title, onclick: action }, label);
       this.liveButton = button("Go live", "Start Python in this page now",
         () => this.touch(undefined, this.liveButton));
-      this.transport = el("div", { class: "pf-transport" }, this.playButton,
-        button("Step", "One tick", (e) => this.stepOnce(e.currentTarget)),
-        button("Restart", "From the same seed",
-          (e) => this.restart(this.readSeed(), e.currentTarget)),
+      this.compareSelect = el("select", { onchange: () => this.compare(this.compareSelect.value) },
+        el("option", { value: "" }, "one world"),
+        ...a.controls.filter((c) => c.kind !== "button" && !Object.keys(c.keys || {}).length)
+          .map((c) => el("option", { value: c.name }, "two worlds: " + c.label)));
+      this.many = a.score ? new PF.Many(a, (...work) => this.engine.many(this.key, ...work),
+        (text) => this.hear(text)) : null;
+      const tools = el("div", { class: "pf-tools" },
+        button("Restart", "From the same seed", (e) => this.restart(this.readSeed(), e.currentTarget)),
         el("label", { class: "pf-seed" }, "Seed ", this.seedInput),
         button("New seed", "Another run of the same experiment",
           (e) => this.restart((this.seed * 48271 + 11) % 9973, e.currentTarget)),
-        this.liveButton,
-        el("span", { class: "pf-spring" }),
+        el("label", { class: "pf-seed" }, "Compare ", this.compareSelect),
+        this.many ? button("Run 100 seeds", `How often? The ${a.score} of 100 runs`,
+          (e) => this.runMany(e.currentTarget)) : null,
+        this.liveButton, el("span", { class: "pf-spring" }),
         this.o.link ? button("Link to this run", "Put this exact run into the address",
           () => this.makeLink()) : null,
         button("Timing", "Frames per second and time per frame",
           () => { this.timing.hidden = !this.timing.hidden; }));
       this.readouts = el("dl", { class: "pf-readouts" });
       this.cells = {};
-      this.controls = el("div", { class: "pf-controls" });
-      this.inputs = {};
-      for (const c of a.controls) if (c.kind !== "point") this.controls.append(this.control(c));
-      this.point = a.controls.find((c) => c.kind === "point");
-      if (this.point) {
-        this.hand = new PF.Hand(this.canvas, this.renderer, () => this.report?.handles || [],
-          (x, y, phase, at) => this.change(this.point.name, [x, y, phase], this.canvas, at));
-      }
       const keys = el("p", { class: "pf-keys", id: id + "-keys" }, this.keyHelp());
-      const head = el("div", { class: "pf-head" }, el("p", { class: "pf-title" }, a.title),
-        this.status);
-      this.missions = new PF.Missions(a.missions, `${a.name}/${a.panel}`, (text) => this.hear(text));
-      this.say(this.mode === "recorded"
-        ? "Recorded run. Touch any control and Python continues from here." : "Ready to start.");
-      r.replaceChildren(head, el("div", { class: "pf-stage" }, this.canvas, this.problem),
-        this.transport, this.timing, this.readouts, this.missions.root, this.controls, keys);
-      this.setPlaying(this.playing);
-      this.theme();
+      return [tools, this.timing, this.many?.root,
+        more.childElementCount ? el("details", { class: "pf-more" },
+          el("summary", {}, `${more.childElementCount} more controls`), more) : null,
+        this.readouts, this.missions.root, keys].filter(Boolean);
     }
 
     keyHelp() {
-      const parts = ["With the picture in focus: space plays and pauses, full stop steps, r restarts"];
+      const parts = ["With the picture in focus: space plays and pauses, full stop goes on by a phase, "
+        + "r restarts, h takes hold of what can be dragged"];
       for (const c of this.about.controls) {
         const keys = Object.keys(c.keys || {});
         if (!keys.length) continue;
@@ -137,70 +147,9 @@
     }
 
     control(c) {
-      const id = `pf-${this.key}-${c.name}`;
-      const help = c.help ? el("span", { class: "pf-help", id: id + "-help" }, c.help) : null;
-      const described = c.help ? id + "-help" : null;
-      const value = this.values[c.name] ?? c.default;
-      let node, write;
-      if (c.kind === "button") {
-        node = el("div", { class: "pf-control pf-is-button" },
-          el("button", { type: "button", "aria-describedby": described,
-            onclick: (e) => this.change(c.name, true, e.currentTarget) }, c.label), help);
-        write = () => {};
-      } else if (c.kind === "toggle") {
-        const box = el("input", { type: "checkbox", id, role: "switch", checked: value,
-          "aria-describedby": described, onchange: () => this.change(c.name, box.checked, box) });
-        node = el("div", { class: "pf-control pf-is-toggle" },
-          el("label", { for: id }, box, el("span", {}, c.label)), help);
-        write = (v) => { box.checked = v; };
-      } else if (c.kind === "choice") {
-        const group = el("div", { class: c.choices.length > 4 ? "" : "pf-segments" });
-        if (c.choices.length > 4) {
-          const select = el("select", { id, "aria-describedby": described,
-            onchange: () => this.change(c.name, select.value, select) },
-          ...c.choices.map(([k, label]) => el("option", { value: k, selected: k === value }, label)));
-          group.append(select);
-          node = el("div", { class: "pf-control" }, el("label", { for: id }, c.label), group, help);
-          write = (v) => { select.value = v; };
-        } else {
-          const radios = c.choices.map(([k, label]) => {
-            const radio = el("input", { type: "radio", name: id, value: k, checked: k === value,
-              onchange: () => this.change(c.name, k, radio) });
-            group.append(el("label", {}, radio, el("span", {}, label)));
-            return radio;
-          });
-          node = el("fieldset", { class: "pf-control", "aria-describedby": described },
-            el("legend", {}, c.label), group, help);
-          write = (v) => radios.forEach((r) => { r.checked = r.value === v; });
-        }
-      } else {
-        const log = c.log && c.lo > 0;
-        const to = (v) => log ? (1000 * Math.log(v / c.lo)) / Math.log(c.hi / c.lo) : v;
-        const from = (p) => {
-          const raw = log ? c.lo * Math.pow(c.hi / c.lo, p / 1000) : +p;
-          const grid = log && raw > 20 * c.step ? Math.pow(10, Math.floor(Math.log10(raw)) - 1) : c.step;
-          return Math.min(c.hi, Math.max(c.lo, +(Math.round(raw / grid) * grid).toFixed(8)));
-        };
-        const decimals = Math.max(0, Math.ceil(-Math.log10(c.step) - 1e-9));
-        const shown = el("output", { for: id });
-        const slider = el("input", { type: "range", id, min: log ? 0 : c.lo, max: log ? 1000 : c.hi,
-          step: log ? 1 : c.step, "aria-describedby": described, oninput: () => {
-            label(from(slider.value));
-            if (!thumb.undecided) act();
-          } });
-        const act = () => this.change(c.name, from(slider.value), slider);
-        const thumb = new PF.Thumb(slider, act, (old) => { slider.value = old; label(from(old)); });
-        const label = (v) => {
-          shown.textContent = written(v, decimals) + (c.unit ? "\u202f" + c.unit : "");
-          slider.setAttribute("aria-valuetext", shown.textContent);
-        };
-        slider.value = to(value);
-        label(value);
-        node = el("div", { class: "pf-control" },
-          el("label", { for: id }, c.label, shown), slider, help);
-        write = (v) => { slider.value = to(v); label(v); };
-      }
-      this.inputs[c.name] = { write, spec: c };
+      const value = this.values[c.name] ?? c.default, id = `pf-${this.key}-${c.name}`;
+      const { node, write } = PF.control(c, id, value, (v, e) => this.change(c.name, v, e));
+      this.inputs[c.name] = { write, spec: c, node };
       return node;
     }
 
@@ -215,28 +164,51 @@
     sayNews(running) {
       const quiet = performance.now() - this.saidAt;
       if (this.news.length && quiet > PAUSE) this.say(this.news.shift());
-      else if (running && quiet > SILENCE) this.say(this.sentence(3));
+      else if (running && !this.transport.byPhase && quiet > QUIET) this.say(this.sentence());
+    }
+
+    /* The last phase in words; of two worlds, what each says. */
+    sentence() {
+      const { sentences } = this.report.phase;
+      const told = sentences.filter(Boolean);
+      if (!told.length) return this.numbers();
+      return told.length > 1 ? `Left: ${told[0]} Right: ${told[1]}` : told[0];
+    }
+
+    numbers() {
+      const { units, decimals } = this.about;
+      return Object.entries(this.report.readouts[0]).slice(0, 3)
+        .map(([k, v]) => `${k} ${written(v, decimals[k])}${units[k] ? " " + units[k] : ""}`)
+        .join(", ") + ".";
     }
 
     theme() {
       const dark = PF.isDark(this.root.parentElement || document.body);
       this.root.classList.toggle("pf-dark", dark);
       this.renderer.dark = dark;
+      this.many?.theme(dark);
       if (this.renderer.last) this.renderer.draw(this.renderer.last);
     }
 
+    /* Picture, sentence, time and main controls are on the screen together: what is left of its height
+       is the picture's. */
+    fit() {
+      const width = Math.floor(this.stage.clientWidth);
+      if (!width) return;
+      const top = parseFloat(getComputedStyle(document.documentElement).getPropertyValue("--pf-top")) || 0;
+      const rest = this.root.querySelector(".pf-bench").offsetHeight - this.stage.offsetHeight;
+      const beside = this.stage.clientWidth < 0.9 * this.root.clientWidth;
+      const below = beside ? this.transport.root.offsetHeight + this.status.parentElement.offsetHeight
+        + this.transport.late.offsetHeight : rest;
+      const title = this.root.firstElementChild.offsetHeight;
+      const most = Math.max(LEAST, innerHeight - top - below - title - MARGIN);
+      this.renderer.resize(width, most, this.compared ? 2 : 1);
+    }
+
     observe() {
-      const stage = this.canvas.parentElement;
-      this.fit = () => {
-        const width = Math.floor(stage.clientWidth);
-        if (width > 0 && width !== this.renderer.width) this.renderer.resize(width);
-        /* The picture stays in sight above its controls, if that leaves room for them. */
-        const height = stage.offsetHeight;
-        this.root.classList.toggle("pf-follow", height > 0 && height < 0.55 * innerHeight);
-        this.root.style.setProperty("--pf-stage", `${height}px`);
-      };
-      new ResizeObserver(this.fit).observe(stage);
-      addEventListener("resize", this.fit);
+      this.refit = () => this.fit();
+      new ResizeObserver(this.refit).observe(this.stage.parentElement.parentElement);
+      addEventListener("resize", this.refit);
       new IntersectionObserver((entries) => {
         this.visible = entries[entries.length - 1].isIntersecting;
       }).observe(this.canvas);
@@ -247,27 +219,41 @@
       }
     }
 
+    /* For hosts that throw pictures away, as a notebook does when a cell runs again. */
+    destroy() {
+      this.gone = true;
+      this.missions.destroy();
+      removeEventListener("resize", this.refit);
+    }
+
     /* ---- recorded ------------------------------------------------------------------------- */
     async loadRecording(recording) {
       this.frames = await PF.decode(recording);
       this.every = recording.every;
+      if (this.mode !== "recorded") return;
       // Who asked for no motion sees the end of the run; who did not sees it from its start.
-      if (this.mode === "recorded") {
-        this.at = this.playing ? 0 : this.frames.length - 1;
-        this.showRecorded();
-      }
+      this.position = this.playing ? 0 : this.frames.length - 1;
+      this.showRecorded();
     }
 
+    /* The place in the recording: a stored frame, or between two of them. */
     showRecorded() {
-      const f = this.frames[this.at];
-      if (f) this.show(f.drawing, f.report);
+      const last = this.frames.length - 1;
+      this.at = Math.min(last, Math.floor(this.position));
+      const frame = this.frames[this.at], share = this.position - this.at;
+      const drawing = share > 0 && this.at < last
+        ? PF.tween(frame, this.frames[this.at + 1], share) : frame.drawing;
+      this.show(drawing, frame.report);
+      this.ticks = Math.round(Math.min(this.position, last) * this.every);
+      this.transport.show(this.ticks, [0, last * this.every]);
+      const told = frame.report.phase.sentences[0];
+      if (told && (this.film || performance.now() - this.saidAt > QUIET)) this.say(told);
     }
 
     /* ---- one frame ------------------------------------------------------------------------ */
     show(drawing, report) {
-      if (!this.renderer.width) {
-        this.renderer.resize(Math.floor(this.canvas.parentElement.clientWidth) || 700);
-      }
+      if (!this.renderer.width) this.fit();
+      if (!this.renderer.width) this.renderer.resize(700);
       const start = performance.now();
       this.renderer.draw(drawing);
       this.drawMs = performance.now() - start;
@@ -281,24 +267,21 @@
     }
 
     tell(report) {
-      for (const [name, value] of Object.entries(report.readouts)) {
+      for (const chip of this.chips.children) {
+        chip.classList.toggle("pf-now", chip.textContent === report.phase.name);
+      }
+      if (this.film) return;
+      for (const name of Object.keys(report.readouts[0])) {
         if (!this.cells[name]) {
-          const number = el("span", {});
-          const unit = this.about.units[name];
+          const number = el("span", {}), unit = this.about.units[name];
           this.readouts.append(el("div", {}, el("dt", {}, name), el("dd", {}, number,
             unit ? el("span", { class: "pf-unit" }, unit) : null)));
           this.cells[name] = number;
         }
-        const text = written(value, this.about.decimals[name]);
+        const text = report.readouts
+          .map((one) => written(one[name] ?? "\u2013", this.about.decimals[name])).join(" | ");
         if (this.cells[name].textContent !== text) this.cells[name].textContent = text;
       }
-    }
-
-    /* For hosts that throw pictures away, as a notebook does when a cell runs again. */
-    destroy() {
-      this.gone = true;
-      this.missions.destroy();
-      removeEventListener("resize", this.fit);
     }
 
     loop(now) {
@@ -309,33 +292,48 @@
       if (!this.root.isConnected) return;
       const run = this.playing && this.visible && !document.hidden;
       if (this.mode === "recorded" && run && this.frames.length) {
-        this.due += (dt * this.about.rate) / this.every;
-        if (this.due >= 1) {
-          this.due %= 1;
-          this.at = (this.at + 1) % this.frames.length;
-          this.showRecorded();
-        }
-      } else if (this.mode === "live") this.sayNews(run);
-      if (this.mode === "live" && !this.busy) {
-        if (run) this.due += dt * this.about.rate;
-        const n = run ? Math.min(4, Math.floor(this.due + 0.05)) : 0;
-        if (n > 0 || this.pending.length) {
-          this.due = Math.max(0, Math.min(1, this.due - n));
-          this.request(n);
-        }
+        this.position += (dt * this.about.rate * this.transport.speed) / this.every;
+        if (this.position >= this.frames.length - 1 + (this.film ? 8 : 0)) this.position = 0;
+        this.showRecorded();
       }
+      if (this.mode !== "live") return;
+      this.sayNews(run);
+      if (this.many) this.many.work(run);
+      if (this.fresh) this.draw(run, dt);
+      else if (!this.busy) this.ask(run, dt);
     }
 
-    /* Send what is pending and n ticks; draw the answer. */
-    async request(n) {
+    /* An answer is there: ask for the next one before it is drawn, so that both go on at once. */
+    draw(run, dt) {
+      const answer = this.fresh;
+      this.fresh = null;
+      this.ticks = answer.report.ticks;
+      this.ask(run, dt);
+      this.accept(answer);
+    }
+
+    ask(run, dt) {
+      const go = run && !this.transport.resting;
+      if (go) this.due += dt * this.about.rate * this.transport.speed;
+      else this.due = 0;
+      const n = go ? Math.min(4, Math.floor(this.due + 0.05)) : 0;
+      if (n < 1 && !this.pending.length) return;
+      this.due = Math.max(0, Math.min(1, this.due - n));
+      this.request(n ? [this.transport.byPhase ? "phase" : "step", n] : null);
+    }
+
+    /* Send what is pending and, at most, one way on. The answer is drawn in the next frame. */
+    async request(on) {
       this.busy = true;
       const operations = this.pending;
       this.pending = [];
       operations.forEach((operation) => this.note(operation));
-      if (n) operations.push(["step", n]);
+      if (on) {
+        this.trim();
+        operations.push(on);
+      }
       try {
-        const answer = await this.engine.run(this.key, operations);
-        this.accept(answer);
+        this.fresh = await this.engine.run(this.key, operations);
       } catch (error) {
         this.fail(error);
       }
@@ -343,23 +341,33 @@
     }
 
     accept({ drawing, report, ms }) {
+      const ended = this.report ? report.phase.count !== this.report.phase.count : true;
       this.show(drawing, report);
       for (const sentence of report.told || []) this.hear(sentence);
       this.missions.judge(report.done);
+      this.transport.show(report.ticks, report.kept);
+      if (ended && this.transport.byPhase && report.phase.name) {
+        this.transport.ended();
+        this.say(this.sentence());
+      }
+      if (this.playing) this.transport.pace(report.ticks, ms);
       const now = performance.now();
       if (this.drawnAt) this.fps += 0.1 * (1000 / Math.max(now - this.drawnAt, 1) - this.fps);
       this.drawnAt = now;
-      this.pyMs = ms;
       this.framesDrawn = (this.framesDrawn || 0) + 1;
       if (!this.timing.hidden && this.framesDrawn % 12 === 0) {
         this.timing.textContent = `${this.fps.toFixed(0)} frames/s, Python ${ms.toFixed(1)} ms, `
           + `drawing ${this.drawMs.toFixed(1)} ms`;
       }
-      for (const [name, value] of Object.entries(report.values || {})) {
-        if (this.values[name] !== value && !this.pending.some((p) => p[1] === name)) {
-          this.values[name] = value;
-          if (this.inputs[name] && !this.held) this.inputs[name].write(value);
-        }
+      this.follow(report.values);
+    }
+
+    /* Controls show what the scene says they are: a handle may have moved one. */
+    follow(values) {
+      for (const [name, value] of Object.entries(values || {})) {
+        if (this.values[name] === value || this.pending.some((p) => p[1] === name)) continue;
+        this.values[name] = value;
+        if (this.inputs[name] && !this.keysHeld) this.inputs[name].write(value);
       }
     }
 
@@ -375,21 +383,13 @@
 
     /* ---- what the reader does ------------------------------------------------------------- */
     setPlaying(on) {
-      if (on && this.mode === "idle") return void this.touch(undefined, this.playButton);
+      if (on && this.mode === "idle") return void this.touch(undefined, this.transport.play);
       this.playing = on;
-      this.playButton.textContent = on ? "Pause" : "Play";
-      this.playButton.setAttribute("aria-pressed", String(on));
-      if (!on && this.report) {
-        this.tell(this.report);
-        if (this.mode === "live") this.say("Paused. " + this.sentence());
-      } else if (this.mode === "live") this.say("Live: Python runs in this page.");
-    }
-
-    sentence(most) {
-      const { units, decimals } = this.about;
-      return Object.entries(this.report.readouts).slice(0, most)
-        .map(([k, v]) => `${k} ${written(v, decimals[k])}${units[k] ? " " + units[k] : ""}`)
-        .join(", ") + ".";
+      this.transport.playing(on);
+      if (on && this.film && this.position >= this.frames.length - 1) this.position = 0;
+      if (on || !this.report) return;
+      this.tell(this.report);
+      if (this.mode === "live") this.say("Paused. " + this.sentence());
     }
 
     readSeed() {
@@ -397,12 +397,18 @@
       return Number.isFinite(seed) && seed >= 0 && seed < 2147483648 ? seed : this.seed;
     }
 
-    async stepOnce(control) {
+    /* What is on its way has come back. */
+    async idle() {
+      while (this.busy || this.fresh) await new Promise((r) => setTimeout(r, 4));
+    }
+
+    async nextPhase(control) {
       this.setPlaying(false);
       await this.touch(undefined, control);
       if (this.mode !== "live") return;
-      while (this.busy) await new Promise((r) => setTimeout(r, 4));
-      await this.request(1);
+      await this.idle();
+      await this.request(["phase", Math.ceil(4 * this.about.rate)]);
+      await this.idle();
       this.say(this.sentence());
     }
 
@@ -421,70 +427,134 @@
       await this.touch(0, control);
     }
 
-    change(name, value, control, at) {
-      const spec = this.about.controls.find((c) => c.name === name);
-      if (spec.kind !== "button" && spec.kind !== "point") this.values[name] = value;
+    scrub(tick, control) {
+      this.setPlaying(false);
+      if (this.mode === "recorded") {
+        this.position = Math.min(this.frames.length - 1, tick / this.every);
+        this.showRecorded();
+      } else if (this.mode === "live") {
+        this.push(["back", tick], (last) => last[0] === "back");
+        this.idle().then(() => this.say(this.sentence()));
+      } else this.touch(undefined, control);
+    }
+
+    /* One more thing to do; takes the place of the last one if that is overtaken by it. */
+    push(operation, overtakes) {
       const last = this.pending[this.pending.length - 1];
-      if (last && last[0] === "set" && last[1] === name && spec.kind === "range") last[2] = value;
-      else if (last && last[1] === name && spec.kind === "point" && last[2][2] === 1 && value[2] === 1) {
-        last[2] = value;
-      } else this.pending.push(["set", name, value]);
-      if (this.mode !== "live") this.touch(undefined, control, at);
+      if (last && overtakes(last)) this.pending[this.pending.length - 1] = operation;
+      else this.pending.push(operation);
+    }
+
+    change(name, value, control) {
+      const spec = this.about.controls.find((c) => c.name === name);
+      if (spec.kind !== "button") this.values[name] = value;
+      this.push(["set", name, value],
+        (last) => last[0] === "set" && last[1] === name && spec.kind === "range");
+      if (this.mode !== "live") this.touch(undefined, control);
+    }
+
+    hold(name, x, y, touch, at) {
+      this.push(["hold", name, x, y, touch],
+        (last) => last[0] === "hold" && last[1] === name && last[4] === "drag" && touch === "drag");
+      if (this.mode !== "live") this.touch(undefined, this.canvas, at);
     }
 
     /* Remember what was done at which tick, so that a link can repeat it. What restarts a run also
        starts its history. */
-    note([kind, name, value]) {
-      const spec = this.about.controls.find((c) => c.name === name);
-      if (kind === "reset" || (kind === "set" && spec && !spec.live)) {
+    note([kind, ...what]) {
+      const spec = kind === "set" && this.about.controls.find((c) => c.name === what[0]);
+      if (kind === "reset" || kind === "compare" || (spec && !spec.live)) {
         this.history = [];
         this.initial = { ...this.values };
         this.ticks = 0;
-      } else if (kind === "set") this.history.push([this.ticks, name, value]);
+      } else if (kind === "set" || kind === "hold" || kind === "other") {
+        this.trim();
+        this.history.push([this.ticks, kind, ...what]);
+      }
     }
+
+    /* After a way back something new happens: what was done later is no longer part of the run. */
+    trim() { this.history = this.history.filter(([tick]) => tick <= this.ticks); }
 
     keydown(e) {
       if (e.ctrlKey || e.metaKey || e.altKey) return;
+      const stop = () => { e.preventDefault(); e.stopPropagation(); };
+      if (this.hand?.key(e)) return stop();
       for (const c of this.about.controls) {
         if (!c.keys || !(e.key in c.keys)) continue;
-        e.preventDefault();
-        e.stopPropagation();
+        stop();
         if (e.repeat) return;
-        if (c.kind === "range") {
-          this.held = { ...(this.held || {}), [c.name]: c };
-        }
+        if (c.kind === "range") this.keysHeld = { ...(this.keysHeld || {}), [c.name]: c };
         if (!this.playing && c.kind === "range") this.setPlaying(true);
         this.change(c.name, c.keys[e.key], this.canvas);
         return;
       }
-      const act = { " ": () => this.setPlaying(!this.playing), ".": () => this.stepOnce(this.canvas),
-        r: () => this.restart(this.readSeed(), this.canvas) }[e.key];
+      const act = { " ": () => this.setPlaying(!this.playing),
+        ".": () => this.film || this.nextPhase(this.canvas),
+        r: () => this.film || this.restart(this.seed, this.canvas) }[e.key];
       if (!act) return;
-      e.preventDefault();
-      e.stopPropagation();
+      stop();
       if (!e.repeat) act();
     }
 
     keyup(e) {
-      for (const c of Object.values(this.held || {})) {
+      for (const c of Object.values(this.keysHeld || {})) {
         if (e.key in c.keys) {
-          delete this.held[c.name];
+          delete this.keysHeld[c.name];
           this.change(c.name, 0, this.canvas);
         }
       }
-      if (this.held && !Object.keys(this.held).length) this.held = null;
+      if (this.keysHeld && !Object.keys(this.keysHeld).length) this.keysHeld = null;
     }
 
     release() {
-      for (const c of Object.values(this.held || {})) this.change(c.name, 0, this.canvas);
-      this.held = null;
+      this.hand?.letGo("cancel");
+      for (const c of Object.values(this.keysHeld || {})) this.change(c.name, 0, this.canvas);
+      this.keysHeld = null;
+    }
+
+    /* ---- two worlds, a hundred seeds -------------------------------------------------------- */
+    async compare(name) {
+      const old = this.compared && this.inputs[this.compared.name];
+      old?.other.remove();
+      this.compareSelect.value = name;
+      const spec = this.about.controls.find((c) => c.name === name);
+      const value = spec ? PF.contrast(spec, this.values[name]) : null;
+      this.compared = spec ? { name, value } : null;
+      if (spec) {
+        const id = `pf-${this.key}-${name}-other`;
+        const { node } = PF.control({ ...spec, help: "" }, id, value, (v) => this.changeOther(v),
+          ", right");
+        node.classList.add("pf-other");
+        this.inputs[name].other = node;
+        this.inputs[name].node.after(node);
+        node.closest("details")?.setAttribute("open", "");
+      }
+      await this.touch(undefined, this.compareSelect);
+      if (this.mode !== "live") return;
+      this.pending.push(["compare", spec ? name : null, value]);
+      this.setPlaying(true);
+      this.fit();
+      this.say(spec ? `Two worlds of one seed. They differ in: ${spec.label}.` : "One world again.");
+    }
+
+    changeOther(value) {
+      this.compared.value = value;
+      this.push(["other", value], (last) => last[0] === "other");
+    }
+
+    async runMany(control) {
+      await this.touch(undefined, control);
+      if (this.mode !== "live") return;
+      this.many.begin(this.renderer.dark);
+      this.say("A hundred seeds run behind the picture.");
     }
 
     /* ---- live ----------------------------------------------------------------------------- */
     /* control: what the reader pressed, which then shows the progress; at: where in the picture */
     async touch(fromTick, control, at = null) {
-      if (this.mode === "live") return;
-      control = control || (this.liveButton.hidden ? this.playButton : this.liveButton);
+      if (this.mode === "live" || this.film) return;
+      control = control || (this.liveButton.hidden ? this.transport.play : this.liveButton);
       this.starting = this.starting
         || this.goLive(fromTick, control, at).finally(() => { this.starting = null; });
       return this.starting;
@@ -492,6 +562,7 @@
 
     async goLive(fromTick, control, at) {
       this.liveButton.disabled = true;
+      this.status.setAttribute("aria-live", "polite");
       if (this.loading) this.loading.box.remove();
       this.loading = new PF.Loading(control, (text) => this.say(text), at);
       try {
@@ -535,29 +606,34 @@
       const state = { id: this.o.id, seed: this.seed, n: this.ticks, v: {}, h: this.history };
       for (const [k, v] of Object.entries(this.initial)) if (this.inputs[k]) state.v[k] = v;
       let text = JSON.stringify(state);
-      const whole = text.length <= 6000;
+      const whole = text.length <= 6000 && !this.compared;
       if (!whole) text = JSON.stringify({ ...state, h: [], n: 0 });
       history.replaceState(null, "", "#run=" + encodeURIComponent(text));
       this.say(whole ? "The address of this page now names this exact run: copy it."
-        : "Too many moves for a link: the address now names the seed and controls only.");
+        : this.compared ? "The address now names the left world's seed and controls."
+          : "Too many moves for a link: the address now names the seed and controls only.");
     }
 
     /* State from an address is data: known names, checked kinds, bounded numbers, or it is ignored.
        Python checks every value once more. */
     open(state) {
-      const ok = (c, v) => c && (
+      const spec = (name) => this.about.controls.find((c) => c.name === name);
+      const fits = (c, v) => c && (
         (c.kind === "range" && typeof v === "number" && Number.isFinite(v))
         || (c.kind === "toggle" && typeof v === "boolean") || (c.kind === "button" && v === true)
-        || (c.kind === "choice" && c.choices.some(([k]) => k === v))
-        || (c.kind === "point" && Array.isArray(v) && v.length === 3 && v.every(Number.isFinite)));
-      const spec = (name) => this.about.controls.find((c) => c.name === name);
+        || (c.kind === "choice" && c.choices.some(([k]) => k === v)));
+      const done = {
+        set: (name, value, ...rest) => !rest.length && spec(name)?.live && fits(spec(name), value),
+        hold: (name, x, y, touch, ...rest) => !rest.length && typeof name === "string"
+          && name.length <= 40 && [x, y].every(Number.isFinite) && PF.TOUCHES.includes(touch),
+      };
       if (Number.isInteger(state.seed) && state.seed >= 0 && state.seed < 2147483648) {
         this.seed = state.seed;
         this.seedInput.value = state.seed;
       }
-      const n = Number.isInteger(state.n) ? Math.max(0, Math.min(20000, state.n)) : 0;
+      const n = Number.isInteger(state.n) ? Math.max(0, Math.min(MOST_REPLAY, state.n)) : 0;
       for (const [name, value] of Object.entries(state.v && typeof state.v === "object" ? state.v : {})) {
-        if (!ok(spec(name), value) || spec(name).kind === "button") continue;
+        if (!fits(spec(name), value) || spec(name).kind === "button") continue;
         this.values[name] = this.initial[name] = value;
         this.inputs[name]?.write(value);
       }
@@ -565,13 +641,13 @@
       let tick = 0;
       for (const entry of Array.isArray(state.h) ? state.h.slice(0, 400) : []) {
         if (!Array.isArray(entry)) continue;
-        const [when, name, value] = entry;
-        if (!Number.isInteger(when) || when < tick || when > n || !ok(spec(name), value)) continue;
-        if (!spec(name).live) continue;
+        const [when, kind, ...what] = entry;
+        if (!Number.isInteger(when) || when < tick || when > n) continue;
+        if (!Object.hasOwn(done, kind) || !done[kind](...what)) continue;
         if (when > tick) start.push(["step", when - tick]);
         tick = when;
-        start.push(["set", name, value]);
-        this.history.push([when, name, value]);
+        start.push([kind, ...what]);
+        this.history.push(entry);
       }
       if (n > tick) start.push(["step", n - tick]);
       this.o.start = start;

@@ -21,7 +21,7 @@
       this.box.append(this.words, this.track);
       control.setAttribute("aria-busy", "true");
       control.classList.add("pf-busy");
-      this.home = control.closest(".pf-control, .pf-transport, .pf-stage, .pf-row")
+      this.home = control.closest(".pf-control, .pf-transport, .pf-tools, .pf-stage, .pf-row")
         || control.parentElement;
       this.home.classList.add("pf-loading-home");
       this.home.append(this.box);

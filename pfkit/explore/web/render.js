@@ -30,14 +30,21 @@
       this.context = canvas.getContext("2d");
       this.dark = false;
       this.last = null;
-      this.first = null;
+      this.views = []; // the first view of each part: its floor
+      this.handles = []; // { name, x, y, view } of what can be dragged
+      this.held = ""; // the handle that the keyboard holds
       this.scratch = document.createElement("canvas");
     }
 
-    /* Match the backing store to the size on the page; call again when that changes. */
-    resize(width) {
-      const narrow = width < 520;
-      const height = Math.round(width * (this.size[1] / this.size[0]) * (narrow ? 1.35 : 1));
+    /* Match the backing store to the size on the page; call again when that changes. `most`: no
+       higher than this; `parts`: how many pictures share the canvas. */
+    resize(width, most = Infinity, parts = 1) {
+      this.stacked = parts > 1 && width < 520;
+      const across = this.stacked ? width : width / parts;
+      const narrow = across < 520;
+      const down = this.stacked ? parts : 1;
+      const whole = down * across * (this.size[1] / this.size[0]) * (narrow ? 1.3 : 1);
+      const height = Math.round(Math.min(whole, most));
       const ratio = Math.min(window.devicePixelRatio || 1, 2);
       this.width = width;
       this.height = height;
@@ -55,7 +62,10 @@
 
     draw(data) {
       this.last = data;
-      this.first = null;
+      this.views = [];
+      this.handles = [];
+      this.box = { x: 0, y: 0, w: this.width, h: this.height };
+      this.fresh = true; // the next view is the first of its part
       const c = this.context;
       c.setTransform(this.ratio, 0, 0, this.ratio, 0, 0);
       c.save();
@@ -74,12 +84,46 @@
       }
       c.restore();
       c.globalAlpha = 1;
+      for (const h of this.handles) this.grip(h);
+    }
+
+    part([k, n]) {
+      const w = this.stacked ? this.width : this.width / n, h = this.stacked ? this.height / n : this.height;
+      this.box = { x: this.stacked ? 0 : k * w, y: this.stacked ? k * h : 0, w, h };
+      this.fresh = true;
+      const c = this.context;
+      c.restore();
+      c.save();
+      c.strokeStyle = this.colours.grid;
+      c.lineWidth = 1;
+      if (k) c.strokeRect(this.box.x, this.box.y - 1, this.box.w + 1, this.box.h + 2);
+    }
+
+    /* What can be dragged shows a ring; what has the keyboard, or a hand near it, a bigger one. */
+    handle(d) {
+      const name = String.fromCodePoint(...d.subarray(3));
+      this.handles.push({ name, x: d[0], y: d[1], view: this.v, shown: Boolean(d[2]) });
+    }
+
+    grip({ name, x, y, view, shown }) {
+      const held = name === this.held;
+      if (!shown && !held) return;
+      const c = this.context;
+      c.beginPath();
+      c.arc(view.left + (x - view.x0) * view.sx, view.bottom - (y - view.y0) * view.sy,
+        held ? 11 : 5, 0, 7);
+      c.fillStyle = this.colours.paper;
+      if (!held) c.fill();
+      c.strokeStyle = this.colours.ink;
+      c.lineWidth = held ? 3 : 2;
+      c.stroke();
     }
 
     view(d) {
-      const [l, b, w, h, x0, x1, y0, y1, equal, box] = d;
-      let left = l * this.width, width = w * this.width;
-      let bottom = (1 - b) * this.height, height = h * this.height;
+      const [l, b, w, h, x0, x1, y0, y1, equal, framed] = d;
+      const box = this.box;
+      let left = box.x + l * box.w, width = w * box.w;
+      let bottom = box.y + (1 - b) * box.h, height = h * box.h;
       let sx = width / (x1 - x0), sy = height / (y1 - y0);
       if (equal) {
         const s = Math.min(sx, sy);
@@ -90,7 +134,8 @@
         height = s * (y1 - y0);
       }
       this.v = { left, bottom, width, height, sx, sy, x0, x1, y0, y1 };
-      if (!this.first) this.first = this.v;
+      if (this.fresh) this.views.push(this.v);
+      this.fresh = false;
       /* A map is cut at its edge; charts may write beside themselves. */
       const c = this.context;
       c.restore();
@@ -100,7 +145,7 @@
         c.rect(left - 1, bottom - height - 1, width + 2, height + 2);
         c.clip();
       }
-      if (box) {
+      if (framed) {
         c.strokeStyle = this.colours.grid;
         c.lineWidth = 1;
         c.strokeRect(Math.round(left) + 0.5, Math.round(bottom - height) + 0.5,
@@ -111,18 +156,25 @@
     X(x) { return this.v.left + (x - this.v.x0) * this.v.sx; }
     Y(y) { return this.v.bottom - (y - this.v.y0) * this.v.sy; }
 
-    /* Data coordinates of a place on the page, in the first view. */
-    locate(clientX, clientY) {
-      const box = this.canvas.getBoundingClientRect(), v = this.first;
-      if (!v) return null;
+    /* Data coordinates of a place on the page, in a view. */
+    locate(clientX, clientY, v) {
+      const box = this.canvas.getBoundingClientRect();
       return [v.x0 + (clientX - box.left - v.left) / v.sx,
         v.y0 - (clientY - box.top - v.bottom) / v.sy];
     }
 
-    /* The other way round: where a place in the first view is on the page. */
-    place(x, y) {
-      const box = this.canvas.getBoundingClientRect(), v = this.first;
+    /* The other way round: where a place in a view is on the page. */
+    place(x, y, v) {
+      const box = this.canvas.getBoundingClientRect();
       return [box.left + v.left + (x - v.x0) * v.sx, box.top + v.bottom - (y - v.y0) * v.sy];
+    }
+
+    /* The view whose floor is at a place on the page, or null. */
+    floor(clientX, clientY) {
+      return this.views.find((v) => {
+        const [x, y] = this.locate(clientX, clientY, v);
+        return x >= v.x0 && x <= v.x1 && y >= v.y0 && y <= v.y1;
+      }) || null;
     }
 
     points(d, style) {
@@ -410,31 +462,86 @@
     return out.buffer;
   }
 
+  /* How the numbers of a record were stored: see pfkit/explore/record.py. */
+  const BESIDE = 1, BEFORE = 2, DESCENT = 3;
+
   PF.decode = async function (recording) {
     const heads = new Int32Array(unplane(await inflate(recording.heads), 4));
     const floats = new Float32Array(unplane(await inflate(recording.floats), 4));
     const deltas = new Int16Array(unplane(await inflate(recording.deltas), 2));
+    const ranges = new Map(recording.ranges.map(
+      ([op, style, nth, row, low, scale]) => [`${op} ${style} ${nth} ${row}`, [low, scale]]));
+    const levels = new Map();
     let h = 0, f = 0, d = 0;
-    return recording.frames.map(([nh, , , ticks, readouts, handles]) => {
-      const out = [];
-      for (const end = h + nh; h < end; h += 3) {
-        const op = heads[h], n = heads[h + 2], { lead, rows } = OPERATIONS[op];
-        out.push(op, heads[h + 1], n);
-        if (!rows || n - lead < FEWEST) {
-          for (let k = 0; k < n; k++) out.push(floats[f++]);
-          continue;
-        }
-        for (let k = 0; k < lead; k++) out.push(floats[f++]);
-        const length = (n - lead) / rows;
-        for (let r = 0; r < rows; r++) {
-          const low = floats[f++], scale = floats[f++];
-          for (let k = 0, level = 0; k < length; k++) {
-            level += deltas[d++];
-            out.push(low + scale * level);
+
+    function rows(key, count, length, mode, descent) {
+      const old = levels.get(key), now = new Int32Array(count * length), out = [];
+      for (let r = 0; r < count; r++) {
+        const [low, scale] = ranges.get(`${key} ${r}`);
+        for (let k = 0, level = 0; k < length; k++) {
+          if (mode === BESIDE) level += deltas[d++];
+          else {
+            const from = mode === DESCENT && descent[k] >= 0 ? descent[k] : k;
+            level = old[r * length + from] + deltas[d++];
           }
+          now[r * length + k] = level;
+          out.push(low + scale * level);
         }
       }
-      return { drawing: Float32Array.from(out), report: { ticks, readouts, handles } };
+      levels.set(key, now);
+      return out;
+    }
+
+    return recording.frames.map(([records, descended, ticks, readouts, sentence]) => {
+      const out = [], modes = [], seen = new Map(), descent = new Int32Array(descended);
+      for (let k = 0, at = 0; k < descended; k++) descent[k] = at += deltas[d++];
+      for (let j = 0; j < records; j++, h += 4) {
+        const op = heads[h], style = heads[h + 1], n = heads[h + 2], mode = heads[h + 3];
+        const { lead, rows: count } = OPERATIONS[op], kind = `${op} ${style}`;
+        const nth = seen.get(kind) || 0;
+        seen.set(kind, nth + 1);
+        out.push(op, style, n);
+        for (let k = 0; k < (mode ? lead : n); k++) out.push(floats[f++]);
+        if (mode) out.push(...rows(`${kind} ${nth}`, count, (n - lead) / count, mode, descent));
+        modes.push(mode);
+      }
+      const report = { ticks, readouts: [readouts], phase: { count: 0, name: "", sentences: [sentence] } };
+      return { drawing: Float32Array.from(out), modes, descent, report };
     });
+  };
+
+  /* The records of a drawing by their keys: [start of the numbers, how many, place in the order]. */
+  function index(drawing) {
+    const found = new Map(), seen = new Map();
+    for (let i = 0, j = 0; i + 3 <= drawing.length; i += 3 + drawing[i + 2], j++) {
+      const kind = `${drawing[i]} ${drawing[i + 1]}`, nth = seen.get(kind) || 0;
+      seen.set(kind, nth + 1);
+      found.set(`${kind} ${nth}`, [i + 3, drawing[i + 2], j]);
+    }
+    return found;
+  }
+
+  /* A drawing between two frames of a recording, a share of the way from a to b. A particle comes from
+     its ancestor; members of a set whose descent is not known wait. */
+  PF.tween = function (a, b, share) {
+    a.index = a.index || index(a.drawing);
+    b.index = b.index || index(b.drawing);
+    const out = Float32Array.from(a.drawing);
+    for (const [key, [start, n]] of a.index) {
+      const op = OPERATIONS[a.drawing[start - 3]], there = b.index.get(key);
+      if (!op.move || !there || there[1] !== n) continue;
+      const mode = b.modes[there[2]];
+      if (op.loose && mode === BESIDE) continue;
+      const length = (n - op.lead) / (op.rows || 3), descends = mode === DESCENT;
+      const turns = op.move === "angle" ? n - length : Infinity;
+      for (let k = op.lead; k < n; k++) {
+        const member = (k - op.lead) % length, from = descends ? b.descent[member] : member;
+        const p = descends && from >= 0 ? a.drawing[start + k - member + from] : a.drawing[start + k];
+        let gap = b.drawing[there[0] + k] - p;
+        if (k >= turns) gap -= 2 * Math.PI * Math.round(gap / (2 * Math.PI));
+        out[start + k] = descends && from < 0 ? b.drawing[there[0] + k] : p + share * gap;
+      }
+    }
+    return out;
   };
 })((globalThis.PF = globalThis.PF || {}));
