@@ -372,7 +372,7 @@ PANELS = {
         score=Score("error", 1200, 3.0),
         values={"world": "square", "show": "copies", "names": False, "sight": 22.0, "M": 2000,
                 "sigma_r": 1.0, "sigma_phi": 20.0, "threshold": 0.7},
-        record=(416, 16),
+        record=(400, 16),
         missions=(
             Mission(
                 "hypotheses die",

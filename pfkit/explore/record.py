@@ -29,7 +29,7 @@ from pfkit.explore.scene import Scene
 LEVELS = 1000
 EXACT, BESIDE, BEFORE, DESCENT = range(4)  # how the numbers of a record are stored
 CLOUD = STYLES.index("particles")
-SORTED = (NUMBER["points"], NUMBER["quills"])
+SETS = (NUMBER["points"], NUMBER["quills"])  # of which the order means nothing
 Key = tuple[int, int, int]  # operation, style, how many of the kind came before in the frame
 
 
@@ -70,9 +70,9 @@ class Packer:
 
     def add(self, frame: list[tuple[Key, np.ndarray]], lineage: NDArray[np.int64] | None) -> int:
         """Append one frame; returns the number of particles whose descent is stored with it."""
-        known = lineage is not None and bool(self.before)
-        if known and lineage is not None:
-            self.ints.append(np.diff(lineage, prepend=0))
+        descent = lineage if self.heads else None  # the first frame descends from none
+        if descent is not None:
+            self.ints.append(np.diff(descent, prepend=0))
         for key, numbers in frame:
             op = operation(key[0])
             rows = _rows(op, numbers)
@@ -81,29 +81,31 @@ class Packer:
                 self.floats.extend(numbers)
                 continue
             self.floats.extend(numbers[: op.lead])
-            mode = self._add_rows(key, rows, lineage if known and key[1] == CLOUD else None)
+            size = lineage.size if lineage is not None and key[1] == CLOUD else -1
+            cloud = rows.shape[1] == size and key[0] in SETS
+            mode = self._add_rows(key, rows, cloud, descent)
             self.heads.extend((key[0], key[1], numbers.size, mode))
-        return lineage.size if known and lineage is not None else 0
+        return 0 if descent is None else descent.size
 
-    def _add_rows(self, key: Key, rows: np.ndarray, lineage: NDArray[np.int64] | None) -> int:
+    def _add_rows(
+        self, key: Key, rows: np.ndarray, cloud: bool, descent: NDArray[np.int64] | None
+    ) -> int:
         """Round, choose the smaller differences, keep the levels for the next frame."""
         levels = np.stack([self._levels(key, k, row) for k, row in enumerate(rows)])
-        before, beside = self.before.get(key), levels
-        if key[0] in SORTED and lineage is None:
-            beside = levels[:, np.lexsort((levels[1], levels[0] // 8))]
-        mode, differences = BESIDE, np.diff(beside, axis=1, prepend=0)
-        if before is not None and before.shape == levels.shape:
-            if lineage is not None and lineage.size == levels.shape[1]:
-                own = np.arange(lineage.size)
-                before = before[:, np.where(lineage < 0, own, lineage)]
-            change = levels - before
-            if lineage is not None or np.abs(change).sum() <= np.abs(differences).sum():
-                mode, differences, beside = BEFORE, change, levels
-                mode = DESCENT if lineage is not None else BEFORE
-        elif lineage is not None:
-            differences, beside = np.diff(levels, axis=1, prepend=0), levels
-        self.before[key] = beside
-        self.ints.append(differences.ravel())
+        before = self.before.get(key)
+        if before is not None and before.shape != levels.shape:
+            before = None
+        if cloud and descent is not None and before is not None:
+            own = np.arange(descent.size)
+            mode, change = DESCENT, levels - before[:, np.where(descent < 0, own, descent)]
+        else:
+            if key[0] in SETS and not cloud:
+                levels = levels[:, np.lexsort((levels[1], levels[0] // 8))]
+            mode, change = BESIDE, np.diff(levels, axis=1, prepend=0)
+            if before is not None and np.abs(levels - before).sum() <= np.abs(change).sum():
+                mode, change = BEFORE, levels - before
+        self.before[key] = levels
+        self.ints.append(change.ravel())
         return mode
 
     def _levels(self, key: Key, k: int, row: np.ndarray) -> NDArray[np.int64]:

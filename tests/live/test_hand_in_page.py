@@ -6,7 +6,6 @@ import pytest
 
 pytestmark = pytest.mark.page
 PHONE = {"width": 390, "height": 844}
-HANDS = ("drive", "landmark", "robot")
 STATE = """x => ({ seed: x.seed, values: x.values, history: x.history, pending: x.pending,
   mode: x.mode, starting: Boolean(x.starting) })"""
 
@@ -84,32 +83,46 @@ def follows(page, top: float, by: float) -> None:
 
 
 def free_place(page) -> tuple[float, float]:
-    """A place in the picture, 60 pixels from all that can be held."""
+    """A place in the picture, 45 pixels from all that can be held."""
     return tuple(
         page.tab.evaluate(
             f"""(() => {{
-              const x = {page.x}, box = x.canvas.getBoundingClientRect(), v = x.renderer.first;
-              const held = x.report.handles.map(([a, b]) => x.renderer.place(a, b));
+              const x = {page.x}, box = x.canvas.getBoundingClientRect();
+              const r = x.renderer, v = r.views[0];
+              const held = r.handles.map((h) => r.place(h.x, h.y, h.view));
               for (let i = 1; i < 10; i++) for (let j = 1; j < 10; j++) {{
                 const p = [box.left + v.left + i / 10 * v.width,
                   box.top + v.bottom - j / 10 * v.height];
-                if (held.every(([a, b]) => Math.hypot(a - p[0], b - p[1]) > 60)) return p;
+                if (held.every(([a, b]) => Math.hypot(a - p[0], b - p[1]) > 45)) return p;
               }}
             }})()"""
         )
     )
 
 
-def handle(page, k: int = 0) -> tuple[float, float]:
-    return tuple(page.tab.evaluate(f"{page.x}.renderer.place(...{page.x}.report.handles[{k}])"))
+def handle(page, name: str) -> tuple[float, float]:
+    """Where something that can be dragged is on the page."""
+    return tuple(
+        page.tab.evaluate(
+            f"""(() => {{
+              const r = {page.x}.renderer, h = r.handles.find((one) => one.name === {name!r});
+              return r.place(h.x, h.y, h.view);
+            }})()"""
+        )
+    )
 
 
 def settle(page) -> None:
-    page.tab.wait_for_function(f"!{page.x}.busy && !{page.x}.pending.length")
+    page.tab.wait_for_function(f"!{page.x}.busy && !{page.x}.pending.length && !{page.x}.fresh")
 
 
-def choose(page, hand: str) -> None:
-    page.tab.evaluate(f"{page.x}.change('hand', {hand!r})")
+def pause(page, seed: int | None = None) -> None:
+    """Stop the run, begun again from a seed if one is given, with the robot standing."""
+    page.tab.evaluate(f"{page.x}.setPlaying(false), {page.x}.hand.letGo('cancel')")
+    if seed is not None:
+        page.tab.evaluate(f"{page.x}.restart({seed})")
+    settle(page)
+    page.tab.wait_for_timeout(50)
     settle(page)
 
 
@@ -118,8 +131,9 @@ SWIPED = [
     ".pf-control input[type=range]",
     ".pf-segments label",
     ".pf-is-button button",
-    ".pf-is-toggle label",
-    ".pf-transport button:nth-of-type(3)",
+    ".pf-transport button:nth-of-type(2)",
+    ".pf-scrub input",
+    ".pf-tools button:nth-of-type(2)",
     ".pf-missions li",
 ]
 
@@ -148,11 +162,9 @@ def test_a_finger_moves_a_slider_sideways(live_phone):
     page.tab.wait_for_function(f"{page.x}.values.M < {1.5 * before}")
 
 
-@pytest.mark.parametrize("hand", HANDS)
-def test_a_swipe_over_a_live_picture_changes_nothing(live_phone, hand):
+def test_a_swipe_over_a_live_picture_changes_nothing(live_phone):
     page = live_phone
-    page.tab.evaluate(f"{page.x}.setPlaying(false)")
-    choose(page, hand)
+    pause(page)
     middle(page, ".pf-canvas")
     for by in ((0, -140), (0, 140), (6, -140)):
         before = page.tab.evaluate(f"[{page.x}.ticks, {page.x}.history, {page.x}.report]")
@@ -163,72 +175,60 @@ def test_a_swipe_over_a_live_picture_changes_nothing(live_phone, hand):
         assert page.tab.evaluate(f"[{page.x}.ticks, {page.x}.history, {page.x}.report]") == before
 
 
-def test_a_held_landmark_moves_and_the_page_stays(live_phone):
+@pytest.mark.parametrize("name", ["landmark 2", "robot", "range noise", "threshold"])
+def test_a_held_handle_moves_and_the_page_stays(live_phone, name):
     page = live_phone
-    page.tab.evaluate(f"{page.x}.setPlaying(false)")
-    choose(page, "landmark")
+    pause(page, seed=3)
     middle(page, ".pf-canvas")
-    start, top = handle(page, 1), scrolled(page)
-    number = page.tab.evaluate(f"{page.x}.report.handles.length")
-    page.thumb.drag(start, (-40, 55 if start[1] < 420 else -55))
-    settle(page)
-    end = handle(page, 1)
-    assert end == pytest.approx((start[0] - 40, start[1] + (55 if start[1] < 420 else -55)), abs=6)
-    assert scrolled(page) == top
-    assert page.tab.evaluate(f"{page.x}.report.handles.length") == number
-
-
-def test_a_held_robot_is_carried_and_the_page_stays(live_phone):
-    page = live_phone
-    page.tab.evaluate(f"{page.x}.restart(3), {page.x}.setPlaying(false)")
-    choose(page, "robot")
-    middle(page, ".pf-canvas")
-    start, top = handle(page), scrolled(page)
-    by = (30 if start[0] < 190 else -30, 80 if start[1] < 420 else -80)
+    start, top = handle(page, name), scrolled(page)
+    by = (30 if start[0] < 190 else -30, 40 if start[1] < 420 else -40)
     page.thumb.drag(start, by)
     settle(page)
-    assert handle(page) == pytest.approx((start[0] + by[0], start[1] + by[1]), abs=6)
+    end = handle(page, name)
+    if name == "threshold":
+        assert page.tab.evaluate(f"{page.x}.values.threshold") != 0.5
+        assert end[1] == pytest.approx(start[1] + by[1], abs=6)
+    elif name == "range noise":
+        assert page.tab.evaluate(f"{page.x}.values.sigma_r") != 0.3
+        shown = page.tab.get_by_label("Range noise").first.get_attribute("aria-valuetext")
+        assert shown.startswith(f"{page.tab.evaluate(page.x + '.values.sigma_r'):.2f}")
+    else:
+        assert end == pytest.approx((start[0] + by[0], start[1] + by[1]), abs=6)
+    if name == "robot":
+        page.tab.evaluate(f"{page.x}.setPlaying(true)")
+        page.tab.wait_for_function(f"{page.x}.status.textContent.includes('carried off')")
     assert scrolled(page) == top
-    page.tab.wait_for_function(f"{page.x}.status.textContent.includes('carried off')")
 
 
-@pytest.mark.parametrize("hand", HANDS)
-def test_a_tap_acts(live_phone, hand):
+def test_a_tap_sends_the_robot_there(live_phone):
     page = live_phone
-    page.tab.evaluate(f"{page.x}.restart(3), {page.x}.setPlaying(false)")
-    choose(page, hand)
+    pause(page, seed=3)
     middle(page, ".pf-canvas")
-    place, handles = free_place(page), page.tab.evaluate(f"{page.x}.report.handles")
+    place = free_place(page)
     page.thumb.tap(place)
-    page.tab.wait_for_function(f"{page.x}.history.some(([, name]) => name === 'point')")
-    settle(page)
-    now = page.tab.evaluate(f"{page.x}.report.handles")
-    if hand == "landmark":
-        assert len(now) == len(handles) + 1 and handle(page, -1 % len(now)) == pytest.approx(
-            place, abs=3
-        )
-    elif hand == "robot":
-        assert handle(page) == pytest.approx(place, abs=3)
-    else:  # it drives there and waits
-        page.tab.evaluate(f"{page.x}.change('autopilot', false), {page.x}.setPlaying(true)")
-        gap = f"Math.hypot(...{page.x}.renderer.place(...{page.x}.report.handles[0])"
-        here = f".map((v, k) => v - [{place[0]}, {place[1]}][k]))"
-        page.tab.wait_for_function(f"{gap}{here} < 16")
-        page.tab.evaluate(f"{page.x}.change('autopilot', true), {page.x}.setPlaying(false)")
+    page.tab.wait_for_function(f"{page.x}.history.some((h) => h[1] === 'hold' && h[5] === 'tap')")
+    page.tab.evaluate(f"{page.x}.change('autopilot', false), {page.x}.setPlaying(true)")
+    page.tab.wait_for_function(
+        f"""(() => {{
+          const r = {page.x}.renderer, h = r.handles.find((one) => one.name === "robot");
+          const [x, y] = r.place(h.x, h.y, h.view);
+          return Math.hypot(x - {place[0]}, y - {place[1]}) < 16;
+        }})()"""
+    )
+    page.tab.evaluate(f"{page.x}.change('autopilot', true), {page.x}.setPlaying(false)")
 
 
 def test_a_tap_on_a_recorded_picture_starts_python_and_acts(phone):
     middle(phone, ".pf-canvas")
     phone.thumb.tap(free_place(phone))
     phone.tab.wait_for_function(f"{phone.x}.mode === 'live'")
-    assert phone.tab.evaluate(f"{phone.x}.history.map(h => [h[1], h[2][2]])") == [["point", 3]]
+    assert phone.tab.evaluate(f"{phone.x}.history.map(h => [h[1], h[5]])") == [["hold", "tap"]]
 
 
 # The last on this page: it stays magnified.
 def test_two_fingers_and_a_sideways_swipe_change_nothing(live_phone):
     page = live_phone
-    page.tab.evaluate(f"{page.x}.setPlaying(false)")
-    choose(page, "landmark")
+    pause(page)
     middle(page, ".pf-canvas")
     before = page.tab.evaluate(f"{page.x}.report")
     x, y = free_place(page)
@@ -246,13 +246,12 @@ def test_two_fingers_and_a_sideways_swipe_change_nothing(live_phone):
 
 
 def test_no_key_of_the_picture_acts_on_a_focused_control(open_page):
-    """k, n, a, d, r, full stop: pressed in any control of the explorable, nothing happens to it."""
+    """h, k, r, full stop: pressed in any control of the explorable, nothing happens to it."""
     page = open_page("scenes.html")
     x = page.live()
-    page.tab.evaluate(f"{x}.setPlaying(false), {x}.change('hand', 'landmark')")
-    settle_ = f"!{x}.busy && !{x}.pending.length && {x}.report.values.hand === 'landmark'"
-    page.tab.wait_for_function(settle_)
-    page.tab.evaluate(f"{x}.setPlaying(false)")
+    page.x = x
+    pause(page)
+    page.tab.locator(".pf-more summary").first.click()
     controls = page.tab.locator(".pf-explorable").first.locator("button, input, select")
     for k in range(controls.count()):
         control = controls.nth(k)
@@ -260,7 +259,7 @@ def test_no_key_of_the_picture_acts_on_a_focused_control(open_page):
             continue
         control.focus()
         before = page.tab.evaluate(f"({STATE})({x})")
-        for key in ("k", "n", "a", "d", "r", ".", "/"):
+        for key in ("h", "k", "r", ".", "/"):
             page.tab.keyboard.press(key)
         assert page.tab.evaluate(f"({STATE})({x})") == before
         assert page.tab.evaluate("document.activeElement") is not None
@@ -270,3 +269,33 @@ def test_no_key_of_the_picture_acts_on_a_focused_control(open_page):
     page.tab.keyboard.type("1.r k")
     assert page.tab.evaluate(f"{x}.ticks") == ticks
     page.tab.context.close()
+
+
+def test_the_keyboard_takes_hold_of_every_handle_and_puts_it_down(open_page):
+    page = open_page("scenes.html")
+    page.x = page.live()
+    tab, x = page.tab, page.x
+    pause(page, seed=3)
+    tab.evaluate(f"{x}.canvas.focus()")
+    names = tab.evaluate(f"{x}.renderer.handles.map((h) => h.name)")
+    assert {"landmark 1", "range noise", "robot", "threshold"} <= set(names)
+    for name in names:
+        tab.keyboard.press("h")
+        assert tab.evaluate(f"{x}.renderer.held") == name
+        assert f"You hold: {name}." in tab.evaluate(f"{x}.status.textContent")
+        settle(page)
+    tab.keyboard.press("Escape")
+    settle(page)
+    assert tab.evaluate(f"{x}.renderer.held") == ""
+    tab.keyboard.press("h")  # the first one again
+    before = handle(page, "landmark 1")
+    for _ in range(4):
+        tab.keyboard.press("ArrowUp")
+        settle(page)
+    tab.keyboard.press("Enter")
+    settle(page)
+    tab.wait_for_timeout(50)
+    after = handle(page, "landmark 1")
+    assert after == pytest.approx((before[0], before[1] - 32), abs=2)
+    assert not page.errors
+    tab.context.close()

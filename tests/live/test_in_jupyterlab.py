@@ -86,5 +86,5 @@ def test_a_control_moved_in_jupyterlab_is_followed(chromium, jupyter):
     tab.wait_for_function(f"{x}.values.n === 6 && {x}.report.values.n === 6", timeout=30_000)
     tab.locator(".pf-canvas").scroll_into_view_if_needed()  # what nobody sees stands still
     tab.wait_for_function(f"{x}.ticks > 2")
-    assert tab.evaluate(f"{x}.report.readouts.draws") > 0
+    assert tab.evaluate(f"{x}.report.readouts[0].draws") > 0
     context.close()

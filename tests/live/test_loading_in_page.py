@@ -31,11 +31,11 @@ def page(open_page):
 
 CONTROLS = [
     ("button", "Go live"),
-    ("button", "Step"),
+    ("button", "Next phase"),
     ("button", "New seed"),
     ("button", "Kidnap the robot"),
     ("radio", "bearing"),
-    ("switch", "Autopilot"),
+    ("button", "Run 100 seeds"),
 ]
 
 
@@ -94,7 +94,7 @@ def test_a_download_that_fails_can_be_tried_again(page, how):
     page.tab.evaluate("PF.patience.seconds = 15")
     again.click()
     page.tab.wait_for_function(f"{page.x}.mode === 'live'", timeout=90_000)
-    page.tab.wait_for_function(f"{page.x}.history.some(([, name]) => name === 'kidnap')")
+    page.tab.wait_for_function(f"{page.x}.history.some((h) => h[2] === 'kidnap')")
 
 
 def test_loading_is_told_in_four_messages_and_events_in_one_each(page):
@@ -111,7 +111,7 @@ def test_a_run_is_not_silent_though_nothing_happens(page):
     page.live(1)
     comb = page.explorable(1)
     page.tab.evaluate(f"{comb}.news.length = 0, said.length = 0, {comb}.saidAt -= 60000")
-    page.tab.wait_for_function("said.some((text) => text.includes('draws'))")
+    page.tab.wait_for_function("said.some((text) => text.includes('strays furthest'))")
 
 
 # ---- ticks ------------------------------------------------------------------------------------
@@ -204,7 +204,7 @@ def test_disabled_buttons_are_legible(open_page, theme):
     page.tab.wait_for_timeout(400)
     contrast = page.tab.evaluate(
         """() => {
-          const button = document.querySelector(".pf-transport button:last-of-type");
+          const button = document.querySelector(".pf-tools button:last-of-type");
           button.disabled = true;
           const light = (c) => {
             const [r, g, b] = c.match(/[\\d.]+/g).slice(0, 3).map((v) => v / 255)
@@ -225,6 +225,7 @@ def test_chosen_colours_keep_switches_choices_and_ticks(open_page):
     page = open_page("scenes.html", forced_colors="active")
     page.explorable()
     root = page.tab.locator(".pf-explorable").first
+    root.locator(".pf-more summary").click()
     switch = root.get_by_role("switch", name="Autopilot")
     switch.scroll_into_view_if_needed()
     looks = []
