@@ -37,6 +37,7 @@ SCENES = {
     "mower": ("pfkit.explore.mower", "Mower"),
     "exact": ("pfkit.explore.exact", "Exact"),
     "office": ("pfkit.explore.office", "Office"),
+    "story": ("pfkit.explore.story", "Story"),
     "proposal": ("pfkit.explore.proposal", "Proposal"),
 }
 

@@ -135,8 +135,9 @@ def record(scene: Scene, steps: int | None = None, every: int | None = None) -> 
     for drawing, lineage, said in zip(drawings, lineages, told, strict=True):
         descent = packer.add(drawing, lineage)
         readouts = {k: _short(v) for k, v in said["readouts"][0].items()}
-        sentence = said["phase"]["sentences"][0]
-        frames.append([len(drawing), descent, said["ticks"], readouts, sentence])
+        phase = said["phase"]
+        told_now = [phase["name"], phase["sentences"][0]]
+        frames.append([len(drawing), descent, said["ticks"], readouts, *told_now])
     return {
         "about": scene.describe(),
         "values": scene.values,

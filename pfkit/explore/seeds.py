@@ -66,6 +66,8 @@ class Seeds:
 
     def sentence(self) -> str:
         """What the runs so far say, in one sentence."""
+        if not self.done:
+            return "The first seeds are running."
         unit, limit = self.gauge.unit, self.score.limit
         after = self.score.ticks / self.worlds[0].rate
         counts = [

@@ -133,7 +133,7 @@ def test_what_is_so_already_is_no_deed(name, panel):
     for ticks in (0, steps // 3, steps):
         operations = [["reset", 1], ["step", ticks], ["watch"]]
         told = json.loads(host.do("k", json.dumps(operations))[1])
-        assert told["done"] == [False] * 3 and told["told"] == []
+        assert not any(told["done"]) and told["told"] == []
 
 
 def test_a_deed_outlives_a_new_run_and_is_none_of_the_seed():
@@ -155,7 +155,7 @@ def test_a_deed_outlives_a_new_run_and_is_none_of_the_seed():
 def test_every_deed_of_a_panel_has_a_name_of_its_own():
     for name, panel in PANELS:
         deeds = [m.deed for m in type(scene(name)).panels[panel].missions]
-        assert len(set(deeds)) == len(deeds) == 3 and all(deeds)
+        assert len(set(deeds)) == len(deeds) and all(deeds)
 
 
 @pytest.mark.parametrize("seed", range(1, 9))

@@ -418,3 +418,18 @@ def test_a_run_of_twenty_seconds_is_told_in_few_sentences(name, panel):
     for _ in range(int(20 * s.rate)):
         s.step()
     assert len(s.news()) <= 10
+
+
+def test_the_story_goes_anywhere_ring_two_places_here():
+    """Of 24 seeds; in the ring and before, most guesses are elsewhere, and so is the mean."""
+    ends = 0
+    for seed in range(1, 25):
+        s = scene("story", seed=seed)
+        shares = {}
+        for _ in range(s.record_steps):
+            s.step()
+            shares.setdefault(s.stage, s.near())
+        ends += s.stage == "here" and s.near() > 0.9
+        assert list(shares)[:3] == ["anywhere", "a ring", "two places"]
+        assert shares["anywhere"] < 0.1 and shares["a ring"] < 0.3
+    assert ends >= 20

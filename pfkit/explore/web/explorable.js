@@ -74,7 +74,7 @@
       }, this.film);
       this.chips = el("ol", { class: "pf-phases", "aria-hidden": "true" },
         ...(a.phases.length > 1 ? a.phases.map((name) => el("li", {}, name)) : []));
-      const says = el("div", { class: "pf-says" }, this.film ? null : this.chips, this.status);
+      const says = el("div", { class: "pf-says" }, this.chips, this.status);
       this.main = el("div", { class: "pf-controls pf-main" });
       this.inputs = {};
       this.missions = new PF.Missions(a.missions, `${a.name}/${a.panel}`, (text) => this.hear(text));
@@ -521,6 +521,7 @@
       const spec = this.about.controls.find((c) => c.name === name);
       const value = spec ? PF.contrast(spec, this.values[name]) : null;
       this.compared = spec ? { name, value } : null;
+      this.root.classList.toggle("pf-two", Boolean(spec));
       if (spec) {
         const id = `pf-${this.key}-${name}-other`;
         const { node } = PF.control({ ...spec, help: "" }, id, value, (v) => this.changeOther(v),

@@ -26,7 +26,8 @@
       this.dark = dark;
       this.root.hidden = false;
       this.stop.hidden = false;
-      this.words.textContent = "The first seeds are running.";
+      this.done = -1;
+      this.words.textContent = "";
     }
 
     end() {
@@ -52,7 +53,7 @@
     }
 
     show(drawing, report) {
-      if (report.done === this.done && this.done > 0) return;
+      if (report.done === this.done) return;
       this.done = report.done;
       if (!this.renderer) this.renderer = new PF.Renderer(this.canvas, report.size);
       this.renderer.dark = this.dark;

@@ -492,7 +492,7 @@
       return out;
     }
 
-    return recording.frames.map(([records, descended, ticks, readouts, sentence]) => {
+    return recording.frames.map(([records, descended, ticks, readouts, name, sentence]) => {
       const out = [], modes = [], seen = new Map(), descent = new Int32Array(descended);
       for (let k = 0, at = 0; k < descended; k++) descent[k] = at += deltas[d++];
       for (let j = 0; j < records; j++, h += 4) {
@@ -505,7 +505,7 @@
         if (mode) out.push(...rows(`${kind} ${nth}`, count, (n - lead) / count, mode, descent));
         modes.push(mode);
       }
-      const report = { ticks, readouts: [readouts], phase: { count: 0, name: "", sentences: [sentence] } };
+      const report = { ticks, readouts: [readouts], phase: { count: 0, name, sentences: [sentence] } };
       return { drawing: Float32Array.from(out), modes, descent, report };
     });
   };
