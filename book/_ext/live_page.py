@@ -9,7 +9,8 @@ In a chapter, an explorable is a directive in a markdown cell::
     ```
 
 `panel`, `seed` and `alt` may be left out; the scene knows good ones. Its guided missions are the
-panel's own, which the scene ticks off when it sees them done. A recorded run and a still are made
+panel's own, which the scene ticks off when it sees them done. With a `caption` it is a film: the
+recorded run alone, to be played and scrubbed, for the middle of a chapter. A recorded run and a still are made
 here, by the scene itself, and kept in .cache/live/runs until pfkit changes. They need neither Node
 nor a network. What computes (Pyodide and so on) comes from tools/live/build.py; if that is not
 there, the build says so and the pages keep recordings and stills.
@@ -73,6 +74,7 @@ class Explorable(SphinxDirective):
         "seed": directives.nonnegative_int,
         "alt": directives.unchanged,
         "name": directives.unchanged,
+        "caption": directives.unchanged,
     }
 
     def run(self) -> list[nodes.Node]:
@@ -90,12 +92,16 @@ class Explorable(SphinxDirective):
             f"-{list(used).index(key) + 2}" if key in used else ""
         )
         used[key] = [name, about["panel"], seed]
-        node = explorable(key=key, title=about["title"], alt=alt, ident=ident, size=about["size"])
+        caption = self.options.get("caption", "")
+        node = explorable(
+            key=key, title=about["title"], alt=alt, ident=ident, size=about["size"], caption=caption
+        )
         self.set_source_info(node)
-        missions = nodes.enumerated_list()
-        for mission in about["missions"]:
-            missions += nodes.list_item("", nodes.paragraph(text=mission["text"]))
-        node += missions
+        if about["missions"] and not caption:
+            missions = nodes.enumerated_list(classes=["pf-missions"])
+            for mission in about["missions"]:
+                missions += nodes.list_item("", nodes.paragraph(text=mission["text"]))
+            node += missions
         return [node]
 
 
@@ -110,17 +116,20 @@ def visit_html(writer: Any, node: explorable) -> None:
     prefix = writer.builder.get_relative_uri(writer.builder.current_docname, "live")
     prefix = prefix.removesuffix(".html")
     width, height = node["size"]
+    caption = escape(node["caption"])
+    film = f' data-caption="{caption}"' if caption else ""
+    name = "pf-caption" if caption else "pf-title"
     writer.body.append(
         f'<div class="pf-explorable" role="group" id="{escape(node["ident"])}" '
-        f'aria-label="{escape(node["title"])}" data-recording="{escape(node["key"])}">\n'
-        f'<p class="pf-title">{escape(node["title"])}</p>\n'
+        f'aria-label="{escape(node["title"])}" data-recording="{escape(node["key"])}"{film}>\n'
+        f'<p class="{name}">{caption or escape(node["title"])}</p>\n'
         f'<img class="pf-still" src="{prefix}-runs/{escape(node["key"])}.svg" width="{width}" '
-        f'height="{height}" alt="{escape(node["alt"])}">\n<div class="pf-missions">\n'
+        f'height="{height}" alt="{escape(node["alt"])}">\n'
     )
 
 
 def depart_html(writer: Any, node: explorable) -> None:
-    writer.body.append("</div>\n</div>\n")
+    writer.body.append("</div>\n")
 
 
 def visit_other(writer: Any, node: explorable) -> None:

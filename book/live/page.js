@@ -151,7 +151,7 @@
     const recording = window.pfRecordings[key];
     const explorable = new PF.Explorable(root, {
       about: recording.about, seed: recording.about.seed, values: recording.values, recording,
-      key: "s" + k, id: root.id, link: true, engine,
+      key: "s" + k, id: root.id, link: true, engine, caption: root.dataset.caption,
     });
     root.pfExplorable = explorable;
     const state = stateFromAddress();
@@ -161,10 +161,29 @@
     }
   }
 
+  /* A way for the keyboard past all navigation: the second stop of the page, after the theme's own. */
+  function offerSkip(root) {
+    const skip = document.createElement("a");
+    skip.className = "pf-skip";
+    skip.href = `#${root.id}`;
+    skip.textContent = "Skip to the moving picture";
+    skip.addEventListener("click", (e) => {
+      e.preventDefault();
+      root.scrollIntoView({ block: "start" });
+      const focus = () => root.pfExplorable ? root.pfExplorable.canvas.focus({ preventScroll: true })
+        : requestAnimationFrame(focus);
+      focus();
+    });
+    const theirs = document.querySelector("#pst-skip-link");
+    if (theirs) theirs.after(skip);
+    else document.body.prepend(skip);
+  }
+
   function start() {
     const header = document.querySelector(".bd-header-article");
     if (header) document.documentElement.style.setProperty("--pf-top", `${header.offsetHeight}px`);
     const roots = [...document.querySelectorAll(".pf-explorable[data-recording]")];
+    if (roots.length) offerSkip(roots[0]);
     const near = new IntersectionObserver((entries) => {
       for (const e of entries) {
         if (!e.isIntersecting) continue;

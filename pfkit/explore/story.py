@@ -1,8 +1,8 @@
 """The story of the course in half a minute: anywhere, a ring, two places, here.
 
-A film, which the front page opens with. The robot has a compass and a map of radio beacons. It hears
-how far away they are, and only those nearby. One range leaves a ring of guesses. Driving straight on
-leaves two places, mirror images of each other. A second beacon tells them apart.
+A film, which the front page opens with. The robot has a compass and a map of radio beacons. It
+hears how far away they are, and only those nearby. One range leaves a ring of guesses. Driving
+straight on leaves two places, mirror images of each other. A second beacon tells them apart.
 """
 
 from __future__ import annotations
@@ -112,9 +112,7 @@ class Story(Scene):
     def _say(self) -> str:
         right = f"{100 * self.near():.0f} % of the guesses are within {CLOSE:g} m of the robot"
         return {
-            STAGES[
-                1
-            ]: f"A ring: one beacon is {self._range():.1f} m away, who knows where. {right}.",
+            STAGES[1]: f"A ring: one beacon is {self._range():.1f} m away, somewhere. {right}.",
             STAGES[2]: f"Two places: left and right of the beacon sound the same. {right}.",
             STAGES[3]: f"Here: another beacon fits only one of the two. {right}.",
         }[self.stage]

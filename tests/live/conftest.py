@@ -42,10 +42,22 @@ SCENES = """# Explorables
 :alt: One bar of weights and five rows of teeth.
 ```
 """
+FILM = """# Films
+
+```{explorable} story
+:seed: 7
+```
+
+```{explorable} drive
+:panel: symmetry
+:caption: Four clouds, one after the other gone.
+```
+"""
 LANGUAGE = {"language_info": {"name": "python", "pygments_lexer": "ipython3"}}
 PAGES = {
-    "index.md": "# Home\n\n```{toctree}\nscenes\nplain\nlab\n```\n",
+    "index.md": "# Home\n\n```{toctree}\nscenes\nfilm\nplain\nlab\n```\n",
     "scenes.md": SCENES,
+    "film.md": FILM,
     "plain.md": "# Plain\n\nNothing lives here.\n",
 }
 

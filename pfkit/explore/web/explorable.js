@@ -4,8 +4,8 @@
      engine.open(key, name, panel, seed)  -> description
      engine.run(key, operations)          -> { drawing, report, ms }
      engine.many(key, ticks, again)       -> { drawing, report, ms }
-   The operations are those of pfkit/explore/host.py. A panel without controls is a film: picture,
-   sentence, play and scrub. A classic script; adds PF.Explorable. */
+   The operations are those of pfkit/explore/host.py. A panel without controls, or what has a caption,
+   is a film: picture, sentence, play and scrub. A classic script; adds PF.Explorable. */
 (function (PF) {
   "use strict";
 
@@ -20,12 +20,12 @@
 
   PF.Explorable = class {
     /* options: about (description), seed, recording (or null), engine() -> promise of an engine,
-       key, link (bool: offer links to the exact run) */
+       key, link (bool: offer links to the exact run), caption */
     constructor(root, options) {
       this.root = root;
       this.o = options;
       this.about = options.about;
-      this.film = !this.about.controls.length;
+      this.film = Boolean(options.caption) || !this.about.controls.length;
       this.key = options.key || "x" + ++count;
       this.seed = options.seed;
       this.values = { ...options.values };
@@ -84,9 +84,11 @@
       }
       const see = el("div", { class: "pf-see" }, this.stage, says, this.transport.root,
         this.transport.late);
-      this.root.replaceChildren(el("p", { class: "pf-title" }, a.title),
+      const title = el("p", { class: "pf-title", hidden: this.film }, a.title);
+      this.root.replaceChildren(title,
         el("div", { class: "pf-bench" }, see, this.film ? null : this.main),
-        ...(this.film ? [] : this.below(id)));
+        ...(this.film ? [this.o.caption ? el("p", { class: "pf-caption" }, this.o.caption) : ""]
+          : this.below(id)));
       this.say(this.mode === "idle" ? "Ready to start." : this.film ? ""
         : "A recorded run. Touch anything and Python goes on from here.");
       this.status.setAttribute("aria-live", this.mode === "recorded" ? "off" : "polite");
