@@ -10,10 +10,10 @@ In a chapter, an explorable is a directive in a markdown cell::
 
 `panel`, `seed` and `alt` may be left out; the scene knows good ones. Its guided missions are the
 panel's own, which the scene ticks off when it sees them done. With a `caption` it is a film: the
-recorded run alone, to be played and scrubbed, for the middle of a chapter. A recorded run and a still are made
-here, by the scene itself, and kept in .cache/live/runs until pfkit changes. They need neither Node
-nor a network. What computes (Pyodide and so on) comes from tools/live/build.py; if that is not
-there, the build says so and the pages keep recordings and stills.
+recorded run alone, to be played and scrubbed, for the middle of a chapter. A recorded run and a
+still are made here, by the scene itself, and kept in .cache/live/runs until pfkit changes. They
+need neither Node nor a network. What computes (Pyodide and so on) comes from tools/live/build.py;
+if that is not there, the build says so and the pages keep recordings and stills.
 
 Cells of a notebook with the metadata ``answer`` become editors, and the check cells after them
 become their Check button. Nothing is written twice: the page gets the notebook's own code cells.
