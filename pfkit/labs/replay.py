@@ -75,6 +75,7 @@ def replay(
     pool: int = 0,
     seed: int = 1,
     fresh: bool = False,
+    worlds: int = WORLDS,
 ) -> Rate:
     """Repeat a check of ``answer`` many times.
 
@@ -88,11 +89,13 @@ def replay(
     pool : int
         How many independent runs to make, by default ``item.pool``; each decision draws
         ``item.runs`` of them without replacement, so the pool should be several times larger.
-        An item with settings has such a pool, shared out, in each of `WORLDS` sets of settings.
+        An item with settings has such a pool, shared out, in each of ``worlds``.
     seed : int
         Differs from the seed of the check itself.
     fresh : bool
         Make new runs for each decision instead: for answers whose runs are not independent.
+    worlds : int
+        How many sets of settings a replay visits, if the item has any.
 
     Notes
     -----
@@ -100,7 +103,7 @@ def replay(
     """
     rng = np.random.default_rng(seed)
     pool = pool or item.pool
-    worlds = WORLDS if item.settings is not None else 1
+    worlds = worlds if item.settings is not None else 1
     pools, others = [], []
     try:
         for w in range(0 if fresh else worlds):

@@ -173,3 +173,24 @@ def test_rows_that_vary_together_count_once_in_all():
     far = abs(float(distance(one).item()))
     assert same_mean(far * 1.01)(six) is True
     assert same_mean(far * 0.99)(six) is not True
+
+
+def test_what_goes_with_the_reference_is_compared_run_by_run():
+    """Nearly right, on the same random numbers: seen. As far off, but independent: not."""
+    rng = np.random.default_rng(5)
+    right, other = rng.normal(size=(2, 30, 3))
+    nearly = right + 0.3 + 0.05 * rng.normal(size=right.shape)
+    assert same_mean()(np.stack([nearly, right], axis=-1)) is not True
+    assert same_mean()(np.stack([other + 0.3, right], axis=-1)) is True
+
+
+def test_a_difference_far_below_the_scatter_is_let_pass():
+    """A mean over one frame fewer is right in another form."""
+    right = np.random.default_rng(6).normal(size=(30, 3))
+    assert same_mean()(np.stack([right + 0.01, right], axis=-1)) is True
+
+
+def test_independent_answers_seldom_seem_to_go_together():
+    rng = np.random.default_rng(7)
+    fails = sum(same_mean()(rng.normal(size=(24, 4, 2))) is not True for _ in range(3000))
+    assert fails == 0

@@ -29,13 +29,13 @@ p2c = "b"
 
 
 # %% p3a
-def deprived(M, radius, rng, runs):
+def deprived(film, M, radius, rng, runs):
     """One True or False per run: is nobody within radius px of the truth?"""
     # BEGIN SOLUTION
     bel = lab.anywhere((runs, M), rng)
-    run = lab.track(lab.film[:10], bel, pf.FixedTarget(1.0), pf.Position(10.0), rng)
+    run = lab.track(film, bel, pf.FixedTarget(1.0), pf.Position(10.0), rng)
     x, y = run.bel.state
-    tx, ty = lab.film.truth[:2, 9]
+    tx, ty = film.truth[:2, -1]
     return (np.hypot(x - tx, y - ty) > radius).all(axis=-1)
     # END SOLUTION
 
@@ -54,11 +54,10 @@ p4a = ("c", 80)
 
 
 # %% p4b
-def ess_history(resample, M, sd, rng, runs):
-    """ESS before each decision to resample, 50 frames: shape (50, runs)."""
+def ess_history(scheme, M, sd, rng, runs):
+    """ESS before each resampling by the scheme, 50 frames: shape (50, runs)."""
     # BEGIN SOLUTION
     bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=5.0)
-    scheme = pf.systematic if resample else None
     run = lab.track(lab.film[:50], bel, pf.FixedTarget(1.0), pf.Position(sd), rng, scheme=scheme)
     return run.ess
     # END SOLUTION
@@ -122,12 +121,12 @@ def copies(scheme, w, rng, runs):
 
 
 # %% p7b
-def final_error(threshold, M, T, rng, runs):
+def final_error(film, threshold, sigma, M, rng, runs):
     """Error in x of the last estimate, px: shape (runs,)."""
     # BEGIN SOLUTION
-    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=80.0)
-    motion, sensor = pf.FixedTarget(0.0), pf.Position(300.0)
-    for t, u, z, truth in lab.film[:T]:
+    bel = lab.around(film.start[:2], (runs, M), rng, sigma=80.0)
+    motion, sensor = pf.FixedTarget(sigma), pf.Position(300.0)
+    for t, u, z, truth in film:
         bel, info = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
     return pf.mean_pose(bel)[0] - truth[0]
     # END SOLUTION

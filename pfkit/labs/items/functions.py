@@ -60,8 +60,10 @@ def as_array(value: Any) -> Any:
 
 
 def _named(name: str, value: Any) -> str:
-    """``M = 20``, ``scheme = systematic``."""
-    return f"{name} = {value.__name__ if hasattr(value, '__name__') else shown(value)}"
+    """``M = 20``, ``scheme = systematic``, ``film = target, circle, low noise, 12 frames``."""
+    if source := getattr(value, "source", ""):  # a log
+        return f"{name} = {source}, {len(value)} frames"
+    return f"{name} = {getattr(value, '__name__', '') or shown(value)}"
 
 
 def _not_a_function(answer: Any) -> Judgement:
@@ -343,8 +345,9 @@ class Experiment(Function):
                 continue
             pair = np.stack([answer, theirs], axis=-1)
             apart = float(np.abs(response.distance(pair)).max())
-            same = response.same_mean(ALIKE)(pair) is True
-            if same and response.same_scatter()(pair) is True and apart < least:
+            if apart < min(least, ALIKE) and all(
+                same(pair) is True for same in (response.same_mean(ALIKE), response.same_scatter())
+            ):
                 best, least = mistake, apart
         return best
 

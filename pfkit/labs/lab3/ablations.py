@@ -320,6 +320,21 @@ def known_start(M, sigma, rng, runs):
     return np.array(rows)
 
 
+@three_filters.wrong("""takes the plain mean of its particles in all three cases
+    Which filter is it that ignores its weights?
+    Before it resamples, C has learned something that only its weights know.
+    weighted=False belongs to the first case only.""")
+def plain_mean_in_all(M, sigma, rng, runs):
+    options = (PLAIN, PLAIN, {"weighted": False})
+    return np.array([_errors(M, sigma, rng, runs, **o) for o in options])
+
+
+@three_filters.refuses("the plain mean in case C")
+def plain_mean_in_c(M, sigma, rng, runs):
+    options = (PLAIN, WEIGHTED, {"weighted": False})
+    return np.array([_errors(M, sigma, rng, runs, **o) for o in options])
+
+
 @three_filters.refuses("the three numbers of the text")
 def told(M, sigma, rng, runs):
     return np.tile([[201.0], [19.8], [0.57]], runs)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 import pfkit as pf
@@ -9,12 +11,9 @@ from pfkit.labs import Choice, Question, experiment
 from pfkit.labs.lab3 import given as lab
 from pfkit.labs.response import same_mean
 from pfkit.labs.statistics import shaped
-from pfkit.labs.target import around, target_log
+from pfkit.labs.target import target_log
 
 P7 = Question("Sample variance")
-
-FILM = target_log("fixed", "low")
-HOME = FILM.start[:2]
 
 M = 6
 
@@ -185,12 +184,23 @@ ALWAYS, SELDOM = 1.0, 0.5  # thresholds
 
 
 def _often_or_seldom(rng):
-    """Resampling always and when needed: few particles for long, and more for a short time."""
+    """Resampling always and when needed: few particles for long, and more for a short time.
+
+    Two films move, so that their frames count; two settings have noise, so that it does.
+    """
     few, more = int(rng.integers(12, 19)), int(rng.integers(45, 66))
-    long, short = int(rng.integers(28, 37)), int(rng.integers(3, 6))
-    pairs = ((few, long), (more, short))
-    both = [(threshold, M, T) for M, T in pairs for threshold in (ALWAYS, SELDOM)]
-    return [*both, (SELDOM, more, int(rng.integers(15, 20)))]  # weights far from equal at the end
+    long, short, middle = (int(rng.integers(*ends)) for ends in ((28, 37), (3, 6), (15, 20)))
+    seeds = rng.integers(2**31, size=2)
+    round_, still = (
+        target_log(path, seed=int(k)) for path, k in zip(("circle", "fixed"), seeds, strict=True)
+    )
+    noisy = float(rng.uniform(60, 100))
+    return [
+        (round_[:long], ALWAYS, 0.0, few), (round_[:long], SELDOM, 0.0, few),
+        (still[:short], ALWAYS, 0.0, more), (still[:short], SELDOM, 0.0, more),
+        (round_[:middle], SELDOM, 0.0, more),  # weights far from equal at the end
+        (still[:long], SELDOM, noisy, few),
+    ]  # fmt: skip
 
 
 @experiment(
@@ -200,23 +210,24 @@ def _often_or_seldom(rng):
     In the loop: bel, _ = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold).""",
     id="p7b",
     points=2,
-    claim="the error scatters with threshold, particles and frames as that of a right experiment",
+    claim="the error scatters with film, threshold, process noise and particles as that of a right "
+    "experiment",
     test="mean of the error and of its square within 5 standard errors of a right one at each of "
-    "five settings",
+    "six settings",
     runs=400,
     pool=12_000,
     settings=_often_or_seldom,
     together=True,
     false_fail=1e-3,
-    margin="5 standard errors in twelve comparisons: 7e-6 for normal means",
+    margin="5 standard errors in 14 comparisons: 8e-6 for normal means",
 )
-def final_error(threshold, M, T, rng, runs):
+def final_error(film, threshold, sigma, M, rng, runs):
     """Error in x of the last estimate, px: shape (runs,)."""
-    bel = lab.around(lab.film.start[:2], (runs, M), rng, sigma=80.0)
-    motion, sensor = pf.FixedTarget(0.0), pf.Position(300.0)
-    for _, u, z, _ in lab.film[:T]:
+    bel = lab.around(film.start[:2], (runs, M), rng, sigma=80.0)
+    motion, sensor = pf.FixedTarget(sigma), pf.Position(300.0)
+    for _, u, z, _ in film:
         bel, _ = pf.step(bel, u, z, motion, sensor, rng, pf.multinomial, threshold)
-    return pf.mean_pose(bel)[0] - lab.film.truth[0, T - 1]
+    return pf.mean_pose(bel)[0] - film.truth[0, -1]
 
 
 def _same_squares(standard_errors=5.0):
@@ -242,55 +253,55 @@ def _resamples_as(x, threshold):
 
 final_error.holds("the errors average out as those of a right experiment", same_mean(5.0))
 final_error.holds(
-    "they scatter as much, for each threshold, number of particles and of frames", _same_squares()
+    "they scatter as much, for each film, threshold, noise and number of particles", _same_squares()
 )
 final_error.wrong("""never-always: gives for both thresholds what resampling below ESS = M/2 gives:
          it ignores the threshold, or the scheme is not multinomial
     Your two variances agree. Where do threshold and scheme enter?
     pf.step resamples if ESS < threshold * M, by the scheme you pass.
     End the call with pf.multinomial, threshold.""")(
-    lambda threshold, M, T, rng, runs: final_error(SELDOM, M, T, rng, runs),
+    lambda film, threshold, sigma, M, rng, runs: final_error(film, SELDOM, sigma, M, rng, runs),
     when=lambda x: _resamples_as(x, SELDOM),
 )
 final_error.wrong("""always: resamples at every frame, whatever the threshold
     Your two variances agree, and are large. Where does the threshold enter?
     pf.step resamples if ESS < threshold * M.
     End the call with pf.multinomial, threshold.""")(
-    lambda threshold, M, T, rng, runs: final_error(ALWAYS, M, T, rng, runs),
+    lambda film, threshold, sigma, M, rng, runs: final_error(film, ALWAYS, sigma, M, rng, runs),
     when=lambda x: _resamples_as(x, ALWAYS),
 )
 final_error.wrong("""absolute-error: returns distances, which are never negative
     Can your errors be negative?
     The variance of an estimate needs the signed error.
     Return the mean of x minus the true x, without abs or hypot.""")(
-    lambda threshold, M, T, rng, runs: np.abs(final_error(threshold, M, T, rng, runs)),
+    lambda film, threshold, sigma, M, rng, runs: np.abs(
+        final_error(film, threshold, sigma, M, rng, runs)
+    ),
     when=lambda x: bool((x[..., 0] >= 0).all()) and _same_squares(4.0)(x) is True,
 )
 final_error.wrong("""estimate: returns the mean of x itself, not its error
     Around which number do your results scatter?
     An error is an estimate minus the truth.
-    pf.mean_pose(bel)[0] - lab.film.truth[0, T - 1].""")(
-    lambda threshold, M, T, rng, runs: final_error(threshold, M, T, rng, runs) + HOME[0],
-    when=lambda x: (
-        same_mean(4.0)(_minus(x, HOME[0])) is True
-        and _same_squares(4.0)(_minus(x, HOME[0])) is True
-    ),
+    pf.mean_pose(bel)[0] - film.truth[0, -1].""")(
+    lambda film, threshold, sigma, M, rng, runs: (
+        final_error(film, threshold, sigma, M, rng, runs) + film.truth[0, -1]
+    )
 )
 final_error.wrong("""other-axis: returns the mean of x minus the true y
     Around which number do your results scatter?
     The truth is (x, y, heading).
-    pf.mean_pose(bel)[0] - lab.film.truth[0, T - 1].""")(
-    lambda threshold, M, T, rng, runs: final_error(threshold, M, T, rng, runs) + HOME[0] - HOME[1],
-    when=lambda x: (
-        same_mean(4.0)(_minus(x, HOME[0] - HOME[1])) is True
-        and _same_squares(4.0)(_minus(x, HOME[0] - HOME[1])) is True
-    ),
+    pf.mean_pose(bel)[0] - film.truth[0, -1].""")(
+    lambda film, threshold, sigma, M, rng, runs: (
+        final_error(film, threshold, sigma, M, rng, runs) - np.diff(film.truth[:2, -1])
+    )
 )
 final_error.wrong("""squared: returns squared errors
     In which unit are your errors?
     The check takes the variance itself.
     Return the mean of x minus the true x.""")(
-    lambda threshold, M, T, rng, runs: final_error(threshold, M, T, rng, runs) ** 2,
+    lambda film, threshold, sigma, M, rng, runs: (
+        final_error(film, threshold, sigma, M, rng, runs) ** 2
+    ),
     when=lambda x: (
         bool((x[..., 0] >= 0).all())
         and same_mean(4.0)(np.stack([x[..., 0], x[..., 1] ** 2], axis=-1)) is True
@@ -298,58 +309,82 @@ final_error.wrong("""squared: returns squared errors
 )
 
 
-def _minus(x, offset):
-    """The outcomes with an offset taken away from the answer."""
-    return np.stack([x[..., 0] - offset, x[..., 1]], axis=-1)
-
-
 final_error.refuses("normal numbers with the right sd for 100 particles and 50 frames")(
-    lambda threshold, M, T, rng, runs: rng.normal(0, 24.5 if threshold == 1 else 5.7, runs)
+    lambda film, threshold, sigma, M, rng, runs: rng.normal(
+        0, 24.5 if threshold == 1 else 5.7, runs
+    )
 )
-final_error.refuses("zeros")(lambda threshold, M, T, rng, runs: np.zeros(runs))
+final_error.refuses("zeros")(lambda film, threshold, sigma, M, rng, runs: np.zeros(runs))
 final_error.refuses("random in range")(
-    lambda threshold, M, T, rng, runs: rng.uniform(-60, 60, runs)
+    lambda film, threshold, sigma, M, rng, runs: rng.uniform(-60, 60, runs)
 )
 final_error.refuses("half as many particles")(
-    lambda threshold, M, T, rng, runs: final_error(threshold, M // 2, T, rng, runs)
+    lambda film, threshold, sigma, M, rng, runs: final_error(
+        film, threshold, sigma, M // 2, rng, runs
+    )
 )
 final_error.refuses("one run, repeated")(
-    lambda threshold, M, T, rng, runs: np.repeat(final_error(threshold, M, T, rng, 1), runs)
+    lambda film, threshold, sigma, M, rng, runs: np.repeat(
+        final_error(film, threshold, sigma, M, rng, 1), runs
+    )
 )
 final_error.refuses("100 particles, whatever is asked")(
-    lambda threshold, M, T, rng, runs: final_error(threshold, 100, T, rng, runs)
+    lambda film, threshold, sigma, M, rng, runs: final_error(film, threshold, sigma, 100, rng, runs)
 )
-final_error.refuses("50 frames, whatever is asked")(
-    lambda threshold, M, T, rng, runs: final_error(threshold, M, 50, rng, runs)
+final_error.wrong("""noise-ignored: gives the motion model a process noise of its own
+    Does your function use sigma?
+    The check chooses how much the model expects the target to move.
+    pf.FixedTarget(sigma).""")(
+    lambda film, threshold, sigma, M, rng, runs: final_error(film, threshold, 1.0, M, rng, runs)
+)
+final_error.wrong("""film-ignored: takes the frames of the lab's film, whatever it is asked
+    Which of your arguments does not occur in your function?
+    The check chooses the film, and how many frames it has.
+    for t, u, z, _ in film.""")(
+    lambda film, threshold, sigma, M, rng, runs: final_error(
+        lab.film[:50], threshold, sigma, M, rng, runs
+    )
+)
+final_error.refuses("as many frames of the lab's film as it is asked for", named="film-ignored")(
+    lambda film, threshold, sigma, M, rng, runs: final_error(
+        lab.film[: len(film)], threshold, sigma, M, rng, runs
+    )
+)
+final_error.refuses("the first frame, as often as there are frames")(
+    lambda film, threshold, sigma, M, rng, runs: final_error(
+        replace(film, z=[film.z[0]] * len(film)), threshold, sigma, M, rng, runs
+    )
 )
 
 
-def _filtered(threshold, M, T, rng, runs, sigma=80.0, sensor=300.0):
-    bel = around(HOME, (runs, M), rng, sigma=sigma)
-    for _, u, z, _ in FILM[:T]:
-        models = pf.FixedTarget(0.0), pf.Position(sensor)
+def _filtered(film, threshold, sigma, M, rng, runs, start=80.0, sensor=300.0):
+    bel = lab.around(film.start[:2], (runs, M), rng, sigma=start)
+    for _, u, z, _ in film:
+        models = pf.FixedTarget(sigma), pf.Position(sensor)
         bel, _ = pf.step(bel, u, z, *models, rng, pf.multinomial, threshold)
     return bel
 
 
 final_error.refuses("the mean of the particles without their weights")(
-    lambda threshold, M, T, rng, runs: (
-        _filtered(threshold, M, T, rng, runs).state[0].mean(axis=-1) - HOME[0]
+    lambda film, threshold, sigma, M, rng, runs: (
+        _filtered(film, threshold, sigma, M, rng, runs).state[0].mean(axis=-1) - film.truth[0, -1]
     )
 )
 final_error.refuses("one particle of the cloud for its mean")(
-    lambda threshold, M, T, rng, runs: (
-        _filtered(threshold, M, T, rng, runs).state[0, :, 0] - HOME[0]
+    lambda film, threshold, sigma, M, rng, runs: (
+        _filtered(film, threshold, sigma, M, rng, runs).state[0, :, 0] - film.truth[0, -1]
     )
 )
 final_error.refuses("a start within 20 px")(
-    lambda threshold, M, T, rng, runs: (
-        pf.mean_pose(_filtered(threshold, M, T, rng, runs, sigma=20.0))[0] - HOME[0]
+    lambda film, threshold, sigma, M, rng, runs: (
+        pf.mean_pose(_filtered(film, threshold, sigma, M, rng, runs, start=20.0))[0]
+        - film.truth[0, -1]
     )
 )
 final_error.refuses("a sensor that says much, sd 30 px")(
-    lambda threshold, M, T, rng, runs: (
-        pf.mean_pose(_filtered(threshold, M, T, rng, runs, sensor=30.0))[0] - HOME[0]
+    lambda film, threshold, sigma, M, rng, runs: (
+        pf.mean_pose(_filtered(film, threshold, sigma, M, rng, runs, sensor=30.0))[0]
+        - film.truth[0, -1]
     )
 )
 
