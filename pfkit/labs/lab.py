@@ -390,12 +390,19 @@ class Lab:
         kept = {"answers": self.answers, "predictions": self.predictions}
         if self.ticks:
             kept["ticks"] = self.ticks
+        if self.who:
+            kept["student"] = {"who": self.who, "term": self.term}
         progress.write(file, progress.empty(self.name) | kept)
         return f"Saved {len(self.answers)} answers to {file.name}.{note}"
 
     def load(self, path: str | Path | None = None) -> str:
-        """Read them back. A file that cannot be read is set aside and named."""
+        """Read them back. A file that cannot be read is set aside and named.
+
+        With it comes back the student whose questions were answered, unless one was named before.
+        """
         data, told = progress.read(Path(path or progress.file_of(self.name)), self.name)
+        if data and "student" in data and not self.who:
+            self.student(**data["student"])
         for name, kept in (data or {}).get("answers", {}).items():
             if name in self.items:
                 self.answers.setdefault(name, kept)

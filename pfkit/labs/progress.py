@@ -2,8 +2,10 @@
 
     {"schema": 1, "lab": "lab3",
      "answers": {"q2a": {"source": "...", "version": "1f0c..."}},
-     "predictions": {"q7a": {"choice": "b", "sure": 70.0, "version": "..."}}}
+     "predictions": {"q7a": {"choice": "b", "sure": 70.0, "version": "..."}},
+     "ticks": {"p3c": [1, 2]}, "student": {"who": "jo17", "term": "2027-spring"}}
 
+The last two are there if a rubric was ticked, or if the questions were a student's own.
 ``version`` is that of the question, so that an answer to an older question can be told apart.
 A file that cannot be read is renamed, never overwritten. One that was kept when labs of chapters
 were called by numbers belongs to the lab of today's name, see `FORMER_NAMES`.
@@ -15,6 +17,7 @@ from pathlib import Path
 from typing import Any
 
 SCHEMA = 1
+LONGEST = 100  # characters of a student's id
 BIGGEST = 5_000_000  # bytes; a lab's answers are some ten thousand
 FORMER_NAMES = {
     "bayes_filter": "ch01",
@@ -67,11 +70,16 @@ def parse(text: str, lab: str) -> dict[str, Any]:
     if not isinstance(ticks, dict):
         raise ValueError("its part 'ticks' is not a table")
     good = {
-        item: [k for k in x if isinstance(k, int)]
+        str(item): [k for k in x if isinstance(k, int)]
         for item, x in ticks.items()
         if isinstance(x, list)
     }
-    return clean | ({"ticks": good} if good else {})
+    if good:
+        clean["ticks"] = good
+    told = data.get("student")
+    if isinstance(told, dict) and told.get("who"):
+        clean["student"] = {k: str(told.get(k, ""))[:LONGEST].strip() for k in ("who", "term")}
+    return clean
 
 
 def _is_per_cent(sure: Any) -> bool:

@@ -151,7 +151,8 @@ def record(name, **items):
     score = sum(g["score"] for g in got.values())
     return {
         "student": name, "file": f"{name}.ipynb", "status": "ok", "score": score, "max": 64.0,
-        "items": got, "texts": {}, "detail": "", "seconds": 1.0, "version": "v", "sha256": "ab",
+        "items": got, "texts": {}, "ticked": {}, "world": "", "detail": "", "seconds": 1.0,
+        "version": "v", "sha256": "ab",
     }  # fmt: skip
 
 
@@ -206,6 +207,57 @@ def test_a_page_shows_markup_as_text():
     names = report.page_names([record("A b"), record("a_b"), record("../x"), record("é" * 300)])
     assert len({n.lower() for n in names.values()}) == 4
     assert all("/" not in n and len(n.encode()) < 200 for n in names.values())
+
+
+# -- what a student said beside the answers ------------------------------------------------------
+
+
+def test_literals_of_a_verb_are_read_and_nothing_else_is():
+    source = "lab.student('jo', term='spring')\nlab.tick('p3c', 1, 2)\nlab.tick(f(), 3)\nstudent(1)"
+    assert cells.said(source, "student") == [("jo", "spring")]
+    assert cells.said(source, "tick") == [("p3c", 1, 2)] and cells.said("def (", "tick") == []
+
+
+def test_ticks_and_the_world_are_read_from_a_notebook_and_from_an_export(pristine, tmp_path):
+    book = submissions.answered()
+    cell = {"cell_type": "code", "metadata": {}, "outputs": [], "execution_count": None}
+    book["cells"] += [
+        cell | {"source": 'lab.student("jo17", "spring")'},
+        cell | {"source": 'lab.tick("p3c", 1)\nlab.tick("p3c", 1, 2)'},
+    ]
+    submissions.write(tmp_path / "a.ipynb", book)
+    told = {"ticks": {"p3c": [1, 2]}, "student": {"who": "jo17", "term": "spring"}}
+    empty = {"schema": 1, "lab": "lab3", "answers": {}, "predictions": {}}
+    (tmp_path / "b.json").write_text(json.dumps(empty | told))
+    for name in ("a.ipynb", "b.json"):
+        found = read(tmp_path / name, LAB, pristine.stubs, pristine.variables)
+        assert found.ticks == {"p3c": [1, 2]} and found.student == ("jo17", "spring")
+
+
+def test_a_student_is_judged_by_the_numbers_of_their_own_world(pristine, tmp_path):
+    try:
+        LAB.student("jo17", "spring")
+        mine, printed = LAB.items["p1b"].key, LAB.items["p1b"].origin.key
+    finally:
+        LAB.forget()
+    assert mine != printed
+    with Batch(pristine, tmp_path, Limits()) as batch:
+        for given, status in ((mine, "passed"), (printed, "wrong")):
+            sources = pristine.stubs | {"p1b": f"p1b = {given!r}"}
+            found = batch._run(Answers(sources=sources, student=("jo17", "spring")))
+            (event,) = [e for e in found["events"] if e.get("item") == "p1b" and "status" in e]
+            assert event["status"] == status or status == "wrong" and event["status"] == "partial"
+
+
+def test_the_students_ticks_stand_beside_the_teachers():
+    got = record("ann", p3c=(0.0, "", "")) | {"ticked": {"p3c": [2]}, "world": "jo17 spring"}
+    got["texts"] = {"p3c": "p3c = 'nobody is near the truth any more'"}
+    lines = report.page(got, LAB).splitlines()
+    boxes = [x for x in lines if x.startswith("* [ ]")]
+    assert [x.endswith("(ticked by the student)") for x in boxes] == [False, True]
+    assert "* Questions of: jo17 spring" in lines
+    header, row = report.rows([got], LAB).splitlines()
+    assert "p3c: 2,jo17 spring" in row and "ticked,world" in header
 
 
 def test_what_was_left_out_is_one_line():

@@ -115,6 +115,19 @@ def test_said_twice_it_unlocks_nothing(lab):
     assert not lab.predictions, "another student starts afresh"
 
 
+def test_a_saved_file_brings_the_students_world_back(lab, tmp_path):
+    lab.student("kim", "spring")
+    key = lab.items["n"].key
+    lab.check("n", key)
+    lab.save(tmp_path / "a.json")
+    lab.forget()
+    lab.load(tmp_path / "a.json")
+    assert (lab.who, lab.term, lab.items["n"].key) == ("kim", "spring", key)
+    lab.student("ann")
+    lab.load(tmp_path / "a.json")
+    assert lab.who == "ann", "who was named stays"
+
+
 def test_asking_shows_the_students_numbers_and_options(lab, capsys):
     lab.student("ann")
     lab.ask("n")

@@ -126,6 +126,8 @@ class Batch:
             "max": sum(i.points for i in lab.items.values() if not isinstance(i, Text)),
             "items": {},
             "texts": {},
+            "ticked": {},
+            "world": "",
             "detail": "",
             "seconds": 0.0,
             "version": self.version,
@@ -140,6 +142,7 @@ class Batch:
             "lab": self.pristine.lab.name,
             "steps": steps(self.pristine, answers),
             "variables": self.pristine.variables,
+            "student": answers.student,
             "memory": self.limits.memory,
             "wall": self.limits.wall,
         }

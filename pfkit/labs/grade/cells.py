@@ -54,6 +54,21 @@ def lab_calls(source: str, lab: str = "lab") -> list[tuple[str, str, str]]:
     ]
 
 
+def said(source: str, verb: str, lab: str = "lab") -> list[tuple[Any, ...]]:
+    """Return the arguments of each call of a verb in which all are literals, in order.
+
+    ``lab.student("jo", term="spring")`` says ``("jo", "spring")``, ``lab.tick("p3c", 1, 2)`` says
+    ``("p3c", 1, 2)``.
+    """
+    found = []
+    for node in ast.walk(parsed(source)):
+        if isinstance(node, ast.Call) and ast.unparse(node.func) == f"{lab}.{verb}":
+            values = [*node.args, *(k.value for k in node.keywords)]
+            if all(isinstance(v, ast.Constant) for v in values):
+                found.append(tuple(v.value for v in values if isinstance(v, ast.Constant)))
+    return found
+
+
 def names_changed(source: str) -> set[str]:
     """Names a cell binds, or changes: ``x.y = 1``, ``x[0] = 1`` and ``x.sort()`` change x."""
     found = bound_and_used(source)[0]

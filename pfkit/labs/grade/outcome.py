@@ -45,6 +45,8 @@ def judge(
         "score": round(score, 3) if status in GRADED else None,
         "items": items,
         "texts": {i: answers.sources[i] for i in texts if i in answers.sources},
+        "ticked": {i: answers.ticks[i] for i in texts if i in answers.ticks},
+        "world": " ".join(filter(None, answers.student)),
         "detail": "; ".join(dict.fromkeys(told + answers.notes))[:1000],
     }
 

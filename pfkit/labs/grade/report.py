@@ -14,7 +14,7 @@ from pfkit.labs.lab import Lab
 
 Record = dict[str, Any]
 COLUMNS = ("student", "file", "status", "score", "max")
-AFTER = ("detail", "seconds", "version", "sha256")
+AFTER = ("ticked", "world", "detail", "seconds", "version", "sha256")
 BLANK = ("unanswered", "locked", "missing")
 RIGHT = ("passed", "predicted")
 
@@ -47,10 +47,17 @@ def _cell(value: Any) -> Any:
 def rows(records: list[Record], lab: Lab) -> str:
     """The grades, as CSV: what was earned stands in the column of its item."""
     body = [
-        [r[c] for c in COLUMNS] + [points(r, i) for i in lab.items.values()] + [r[c] for c in AFTER]
+        [r[c] for c in COLUMNS]
+        + [points(r, i) for i in lab.items.values()]
+        + [_ticked(r[c]) if c == "ticked" else r[c] for c in AFTER]
         for r in sorted(records, key=lambda r: r["file"])
     ]
     return _table([*COLUMNS, *lab.items, *AFTER], body)
+
+
+def _ticked(ticks: dict[str, list[int]]) -> str:
+    """``p3c: 1 2`` means that the student ticked the first two lines of the rubric of p3c."""
+    return "; ".join(f"{item}: {' '.join(map(str, lines))}" for item, lines in ticks.items())
 
 
 def points(record: Record, item: Item) -> float | None:
@@ -128,6 +135,8 @@ def page(record: Record, lab: Lab) -> str:
         f"* File: {_plain(record['file'])}, SHA-256 {record['sha256'][:12] or 'none'}",
         f"* Version: {record['version']}",
     ]
+    if record["world"]:
+        head.append(f"* Questions of: {_plain(record['world'])}")
     if record["detail"]:
         head.append(f"* To look at: {_plain(record['detail'])}")
     if not record["items"]:
@@ -162,7 +171,12 @@ def _texts(record: Record, lab: Lab) -> list[str]:
         fence = "`" * max(3, 1 + max(map(len, re.findall("`+", source)), default=0))
         lines += ["", f"## {name}: {_plain(item.title)} ({item.points:g} by hand)", ""]
         lines += [fence + "python", source.strip()[:5000], fence, ""]
-        lines += [f"* [ ] {_plain(r)}" for r in item.rubric] + ["", f"Model: {_plain(item.model)}"]
+        ticked = record["ticked"].get(name, [])
+        lines += [
+            f"* [ ] {_plain(line)}" + " (ticked by the student)" * (k in ticked)
+            for k, line in enumerate(item.rubric, start=1)
+        ]
+        lines += ["", f"Model: {_plain(item.model)}"]
     return lines
 
 

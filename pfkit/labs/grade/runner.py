@@ -51,6 +51,7 @@ class Session:
         self._channel, self._variables = channel, job["variables"]
         self._lab = importlib.import_module(f"pfkit.labs.{job['lab']}").LAB
         self._lab.asks_how_sure = False
+        self._lab.student(*job["student"])
         self._main = types.ModuleType("__main__")
         sys.modules["__main__"] = self._main
         self._names = vars(self._main)

@@ -13,7 +13,7 @@ from pathlib import Path
 from typing import Any
 
 from pfkit.labs import catalogue, progress
-from pfkit.labs.grade.cells import labs_imported, parsed
+from pfkit.labs.grade.cells import labs_imported, parsed, said
 from pfkit.labs.lab import Lab
 from pfkit.labs.names import bound_and_used
 
@@ -41,6 +41,10 @@ class Answers:
         Reasons for the status ``review``.
     elsewhere : set of str
         Names bound in cells that are not answer cells; they are not executed.
+    ticks : dict
+        Item id to the numbers of the lines of its rubric that the student ticked.
+    student : tuple of two str
+        Id and term of a world of the student's own; empty for the questions as printed.
     """
 
     sources: dict[str, str] = field(default_factory=dict)
@@ -48,6 +52,8 @@ class Answers:
     notes: list[str] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
     elsewhere: set[str] = field(default_factory=set)
+    ticks: dict[str, list[int]] = field(default_factory=dict)
+    student: tuple[str, str] = ("", "")
 
 
 def collect(folder: Path) -> list[Path]:
@@ -129,6 +135,13 @@ def _from_notebook(data: dict[str, Any], lab: Lab, stubs: dict[str, str]) -> Ans
     pairs = list(_code(data.get("cells")))
     _same_lab([source for _, source in pairs], lab.name)
     found, answers = dict[str, list[str]](), Answers()
+    told = progress.empty(lab.name)
+    for _, source in pairs:
+        for who, *term in said(source, "student"):
+            told["student"] = {"who": who, "term": term[0] if term else ""}
+        for item, *lines in said(source, "tick"):
+            told["ticks"] = told.get("ticks", {}) | {item: lines}
+    _personal(answers, progress.parse(json.dumps(told), lab.name))
     for item, source in pairs:
         if item in stubs:
             found.setdefault(item, []).append(source)
@@ -189,6 +202,7 @@ def _from_export(
     except (ValueError, RecursionError, TypeError, AttributeError) as error:
         raise Malformed(" ".join(str(error).split())[:160]) from None
     answers = Answers(sources=dict(stubs))
+    _personal(answers, kept)
     for item, guess in kept["predictions"].items():
         if item in stubs:
             pair = (guess["choice"], guess["sure"])
@@ -201,6 +215,13 @@ def _from_export(
         else:
             answers.notes.append(f"unknown item {item[:40]!r} ignored")
     return answers
+
+
+def _personal(answers: Answers, kept: dict[str, Any]) -> None:
+    """The student's own ticks, and the world whose questions were answered."""
+    answers.ticks = kept.get("ticks", {})
+    told = kept.get("student", {"who": "", "term": ""})
+    answers.student = told["who"], told["term"]
 
 
 def _as_cell(source: str, variable: str) -> str:
