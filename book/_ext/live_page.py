@@ -16,8 +16,9 @@ need neither Node nor a network. What computes (Pyodide and so on) comes from to
 if that is not there, the build says so and the pages keep recordings and stills.
 
 Cells of a notebook with the metadata ``answer`` become editors, and the check cells after them
-become their Check button. Nothing is written twice: the page gets the notebook's own code cells.
-A question that asks for a letter (`Choice`, `Prediction`) is answered with radio buttons; their
+become their Check button. A cell with ``lab.solution("id")`` gives way to the worked answer of that
+item, which shows once it passed or after three hints. Nothing is written twice: the page gets the
+notebook's own code cells. A question that asks for a letter (`Choice`, `Prediction`) is answered with radio buttons; their
 texts are the lab's own, and they write the cell's code.
 
 Only pages with live parts load any of it.
@@ -47,9 +48,9 @@ from pfkit.explore import scene as open_scene
 from pfkit.explore.record import record, to_script
 from pfkit.explore.still import to_svg
 from pfkit.labs import catalogue
-from pfkit.labs.grade.cells import VERBS, lab_calls, labs_imported
+from pfkit.labs.grade.cells import VERBS, lab_calls, labs_imported, said
 from pfkit.labs.guard import PAGE_LIMIT
-from pfkit.labs.items import Choice, Prediction
+from pfkit.labs.items import Choice, Prediction, Text
 from pfkit.labs.progress import FORMER_NAMES
 
 logger = logging.getLogger(__name__)
@@ -57,7 +58,7 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
 SCRIPTS = ("keys.js", "palette.js", "operations.js", *FRONT_END, "page.js")
-LAB_SCRIPTS = ("store.js", "choices.js", "lab.js")
+LAB_SCRIPTS = ("store.js", "choices.js", "afterwards.js", "student.js", "lab.js")
 STUB = re.compile(r"^(\w+) = \.\.\.\s*(#.*)?$")  # an answer cell that waits for a letter
 
 
@@ -151,15 +152,22 @@ def python_size(
 
 
 def question(module: str, item: str, source: str) -> dict[str, Any]:
-    """What the lab itself says of a question: its version, and the options it offers, if any."""
+    """What the lab itself says of a question: its version, and its options or rubric, if any.
+
+    ``worked`` tells that it has a worked answer which is no letter and no text.
+    """
     found = import_module(f"pfkit.labs.{module}").LAB.items.get(item)
     if found is None:
         logger.warning(
             "live_page: pfkit.labs.%s has no item %r (cell metadata answer)", module, item
         )
         return {"version": ""}
+    if isinstance(found, Text):
+        return {"version": found.version, "rubric": list(found.rubric)}
     name = STUB.match(source)
-    if not name or not isinstance(found, Choice | Prediction):
+    if not isinstance(found, Choice | Prediction):
+        return {"version": found.version, "worked": True}
+    if not name:
         return {"version": found.version}
     options = [list(pair) for pair in found.options.items()]
     choose = {"name": name[1], "options": options, "sure": isinstance(found, Prediction)}
@@ -185,6 +193,8 @@ def read_lab(cells: list[dict[str, Any]]) -> dict[str, Any] | None:
             verb in VERBS and asked == open_item for verb, asked, _ in lab_calls(sources[i], alias)
         ):
             entry.update(kind="check", item=cell["metadata"].get("check", open_item))
+        elif shown := said(sources[i], "solution", alias):
+            entry.update(kind="solution", item=shown[0][0])
         out.append(entry)
     former = FORMER_NAMES.get(module)
     return {"lab": module, "former": former, "alias": alias, "cells": out}

@@ -9,7 +9,7 @@
   const BIGGEST = 2e6; // characters of a file to import
   const LONGEST = 100000; // characters of one imported answer
   const ROOM = 5e8; // bytes: a Python that holds more is ended after the run
-  let lab, limit, store, python, editors = [], bar, busy = null, predictions = {}, refused = false;
+  let lab, limit, store, python, editors = [], bar, busy = null, predictions = {}, refused = false, who;
 
   /* ---- a file of answers ------------------------------------------------------------------ */
   function exportAnswers() {
@@ -18,6 +18,9 @@
       if (e.text !== e.cell.source) answers[e.cell.item] = { source: e.text, version: e.cell.version };
     }
     const data = { schema: 1, lab: lab.lab, answers, predictions };
+    const ticks = store.ticks(), student = PF.studentOf(store.student());
+    if (Object.keys(ticks).length) data.ticks = ticks;
+    if (student) data.student = student;
     const blob = new Blob([JSON.stringify(data, null, 1) + "\n"], { type: "application/json" });
     const link = el("a", { href: URL.createObjectURL(blob), download: `${lab.lab}_answers.json` });
     document.body.append(link);
@@ -40,6 +43,7 @@
     }
     let n = 0, old = 0;
     adopt(data.predictions);
+    adoptTicks(data.ticks);
     if (Object.keys(predictions).length) editors[0].isKept(store.writePredictions(predictions));
     for (const e of editors) {
       const entry = Object.hasOwn(data.answers, e.cell.item) ? data.answers[e.cell.item] : null;
@@ -48,6 +52,8 @@
       n++;
       if (entry.version !== e.cell.version) old++;
     }
+    const student = PF.studentOf(data.student);
+    if (student) who.show(student, `The file answers the questions of ${student.who}: use the id to get them.`);
     return `Imported ${n} answers.` + (old ? ` ${old} of them answer an earlier version of a question.` : "");
   }
 
@@ -79,10 +85,55 @@
     }
   }
 
+  /* Ticks of a file, for rubrics that this page has: whole numbers of their lines. */
+  function adoptTicks(found) {
+    for (const e of editors) {
+      const lines = e.rubric && found && typeof found === "object" && Object.hasOwn(found, e.cell.item)
+        ? found[e.cell.item] : null;
+      if (!Array.isArray(lines)) continue;
+      e.isKept(store.writeTicks(e.cell.item, lines.filter((k) => e.cell.rubric[k - 1] !== undefined)));
+    }
+    showTicks();
+  }
+
+  function showTicks() {
+    const ticks = store.ticks();
+    for (const e of editors) {
+      if (e.rubric && Array.isArray(ticks[e.cell.item])) e.rubric.show(ticks[e.cell.item]);
+    }
+  }
+
+  /* ---- whose questions ---------------------------------------------------------------------- */
+  /* Ask a student's questions, null for those in print; how many differ from those. */
+  async function enter(student) {
+    if (busy) throw new Error("an answer is still running");
+    const told = await python.ask({ do: "student", lab: lab.lab, who: "", term: "", ...student });
+    const asked = JSON.parse(told);
+    for (const e of editors) if (asked[e.cell.item] !== e.own) e.askAnew();
+    editors[0].isKept(store.writeStudent(student && { ...student, asked }));
+    await tellPython();
+    return showQuestions();
+  }
+
+  /* The questions of one's own that the store holds, above their answers; how many there are. */
+  function showQuestions() {
+    const asked = store.student().asked || {};
+    for (const e of editors) e.showQuestion(Object.hasOwn(asked, e.cell.item) ? String(asked[e.cell.item]) : "");
+    return editors.filter((e) => e.own).length;
+  }
+
+  /* Python, started if need be, that knows what the reader locked and whose questions these are. */
+  async function informed() {
+    const starts = !python.worker;
+    await python.start();
+    if (starts || !python.told) await tellPython();
+  }
+
   async function tellPython() {
     python.told = true;
-    if (!Object.keys(predictions).length) return;
-    const text = JSON.stringify({ schema: 1, lab: lab.lab, answers: {}, predictions });
+    const student = PF.studentOf(store.student());
+    if (!Object.keys(predictions).length && !student) return;
+    const text = JSON.stringify({ schema: 1, lab: lab.lab, answers: {}, predictions, student });
     await python.ask({ do: "restore", lab: lab.lab, text });
   }
 
@@ -90,7 +141,10 @@
     const text = await python.ask({ do: "progress", lab: lab.lab });
     if (!text) return;
     // A lock stays: a Python that was stopped and started anew may not know it yet.
-    predictions = { ...predictions, ...JSON.parse(text).predictions };
+    const told = JSON.parse(text);
+    predictions = { ...predictions, ...told.predictions };
+    for (const [item, lines] of Object.entries(told.ticks || {})) store.writeTicks(item, lines);
+    showTicks();
     showLocks();
     if (Object.keys(predictions).length) answer.isKept(store.writePredictions(predictions));
   }
@@ -120,6 +174,7 @@
       if (saved && saved.version === cell.version) {
         this.text = this.base = saved.source;
         this.judged = saved.judged && { ...saved.judged, earlier: true };
+        this.hints = Number(saved.hints) || 0;
         if (saved.source !== cell.source) this.note.textContent = "Your saved answer.";
       } else if (saved && store.write(cell.item + "/old", saved)) store.remove(cell.item);
       this.makeEditor();
@@ -156,13 +211,25 @@
         code = this.disclosure = el("details", { class: "pf-code", ontoggle: () => this.arrange() },
           el("summary", {}, "Show code"), this.editorBox);
       }
+      this.question = el("p", { class: "pf-own", hidden: true });
+      if (cell.rubric) {
+        this.rubric = new PF.Rubric(cell.item, cell.rubric,
+          (lines) => this.isKept(store.writeTicks(cell.item, lines)));
+      }
+      if (cell.worked) {
+        this.worked = new PF.Worked(cell.item, async () => {
+          await informed();
+          return python.ask({ do: "solution", lab: lab.lab, item: cell.item });
+        });
+      }
+      this.hints = 0;
       this.root = el("div", { class: "pf-answer", role: "group", "aria-label": `Answer ${cell.item}` },
         el("div", { class: "pf-row" }, el("span", { class: "pf-name" }, cell.item), this.verdict,
           this.note, this.clock),
-        this.offer, this.conflict, this.choices ? this.choices.root : null, code, this.warning,
+        this.question, this.offer, this.conflict, this.choices ? this.choices.root : null, code, this.warning,
         this.buttons = el("div", { class: "pf-row" }, this.runButton, this.checkButton,
           this.resetButton, this.stopButton, this.againButton),
-        this.out);
+        this.out, this.rubric && this.rubric.root, this.worked && this.worked.root);
     }
 
     makeEditor() {
@@ -215,10 +282,28 @@
         return;
       }
       const edited = judged && judged.source !== this.text;
+      if (this.rubric) this.rubric.root.hidden = !judged || judged.status !== "recorded";
+      if (this.worked) this.worked.root.hidden = !PF.maySee(judged, this.hints);
       this.verdict.textContent = judged
         ? (judged.earlier ? "earlier: " : "") + judged.told + (edited ? ", edited since" : "") : "";
       root.dataset.status = judged ? judged.status : "";
       root.toggleAttribute("data-stale", Boolean(edited));
+    }
+
+    /* The question with the reader's own numbers; "" where those in print stand. */
+    showQuestion(text) {
+      this.own = text;
+      this.question.hidden = !text;
+      this.question.textContent = text && `Your question: ${text}`;
+    }
+
+    /* Other numbers: what was judged, and the worked answer, were about the old ones. */
+    askAnew() {
+      this.judged = undefined;
+      this.hints = 0;
+      if (this.worked) this.worked.filled = this.worked.root.open = false;
+      this.showVerdict();
+      if (this.stored() === this.text) this.save(true);
     }
 
     /* ---- keeping ---- */
@@ -226,7 +311,8 @@
     save(judged = false) {
       clearTimeout(this.saving);
       if (this.text === this.base && !judged) return;
-      const record = { source: this.text, version: this.cell.version, judged: this.judged };
+      const { text: source, judged: verdict, hints } = this;
+      const record = { source, version: this.cell.version, judged: verdict, hints };
       const there = this.stored();
       if (this.other || (there !== this.base && there !== this.text)) {
         this.isKept(store.write(this.cell.item + "/aside", record));
@@ -250,6 +336,7 @@
       const news = record.source !== this.text;
       this.base = record.source;
       this.judged = record.judged && { ...record.judged, earlier: true };
+      this.hints = Number(record.hints) || 0;
       if (news) {
         this.editor.set(record.source);
         this.note.textContent = "This is what you typed in another tab.";
@@ -345,6 +432,7 @@
         if (check) {
           const told = report.headline.slice(this.cell.item.length + 2);
           this.judged = { source, status: report.status, told: told || "could not be judged" };
+          if (["wrong", "partial"].includes(report.status)) this.hints++;
           this.save(true);
         }
         this.showVerdict();
@@ -471,18 +559,26 @@
         + `your answers are kept in this browser. A cell is stopped after ${lab.seconds} seconds.`),
       button("Export answers", () => { note.textContent = exportAnswers(); }),
       el("label", { for: "pf-import" }, "Import answers", file), note);
+    who = new PF.Student(enter);
     for (const cell of answers) {
       const check = lab.cells.find((c) => c.kind === "check" && c.item === cell.item);
       const node = at(cell);
       editors.push(new Answer(cell, check, node, check && at(check)));
     }
-    editors[0].root.before(bar);
+    editors[0].root.before(bar, who.root);
+    for (const cell of lab.cells.filter((c) => c.kind === "solution" && at(c))) {
+      if (editors.some((e) => e.worked && e.cell.item === cell.item)) at(cell).remove();
+    }
     adopt(store.predictions());
+    showTicks();
+    showQuestions();
+    who.show(PF.studentOf(store.student()));
     new MutationObserver(() => {
       for (const e of editors) e.editor.theme(PF.isDark(e.root));
     }).observe(document.documentElement, { attributes: true, attributeFilter: ["data-theme"] });
     store.listen((name, text) => {
       if (name === "*predictions") adopt(store.predictions());
+      if (name === "*ticks") showTicks();
       const one = editors.find((e) => e.cell.item === name);
       if (one) one.follow(PF.Store.record(text));
     });

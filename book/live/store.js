@@ -1,5 +1,6 @@
 /* What a reader answered, kept in this browser: one record per answer, seen by all tabs.
-   A record is { source, version, judged }, judged the verdict on some source. Beside it, under
+   A record is { source, version, judged, hints }, judged the verdict on some source, hints how many
+   checks gave one. All that belongs to the lab lies under a name with a star. Beside it, under
    "item/aside", lies the text of a tab that found another text in its place, and under "item/old"
    the answer to an earlier version of the question. */
 (function (PF) {
@@ -73,6 +74,26 @@
       return this.write("*predictions",
         { schema: 1, lab: this.lab, answers: {}, predictions: all });
     }
+
+    /* What lies under a name with a star: an object, empty if there is none. */
+    whole(name) {
+      try {
+        const found = JSON.parse(localStorage.getItem(this.place + name));
+        return found && typeof found === "object" ? found : {};
+      } catch {
+        return {};
+      }
+    }
+
+    /* Numbers of the lines of its rubric that the reader ticked, by item. */
+    ticks() { return this.whole("*ticks"); }
+
+    writeTicks(item, lines) { return this.write("*ticks", { ...this.ticks(), [item]: lines }); }
+
+    /* Whose questions are asked: { who, term, asked }, asked by item; empty for those in print. */
+    student() { return this.whole("*student"); }
+
+    writeStudent(student) { return this.write("*student", student || {}); }
 
     /* Tell of what other tabs write: hear(name, text), with text null for a removal. */
     listen(hear) {

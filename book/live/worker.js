@@ -129,6 +129,8 @@ const DO = {
   memory: () => python._module.HEAP8.length,
   progress: (m) => cells.progress(m.lab),
   restore: (m) => cells.restore(m.lab, m.text),
+  student: (m) => cells.student(m.lab, m.who, m.term),
+  solution: (m) => cells.solution(m.lab, m.item),
 };
 
 self.onmessage = async ({ data }) => {

@@ -387,7 +387,7 @@ class Lab:
         if file.exists():
             old, told = progress.read(file, self.name)
             note = "" if old is not None else f" {told}"
-        kept = {"answers": self.answers, "predictions": self.predictions}
+        kept: dict[str, Any] = {"answers": self.answers, "predictions": self.predictions}
         if self.ticks:
             kept["ticks"] = self.ticks
         if self.who:

@@ -246,7 +246,7 @@ def test_a_student_is_judged_by_the_numbers_of_their_own_world(pristine, tmp_pat
             sources = pristine.stubs | {"p1b": f"p1b = {given!r}"}
             found = batch._run(Answers(sources=sources, student=("jo17", "spring")))
             (event,) = [e for e in found["events"] if e.get("item") == "p1b" and "status" in e]
-            assert event["status"] == status or status == "wrong" and event["status"] == "partial"
+            assert event["status"] == status or (status == "wrong" and event["status"] == "partial")
 
 
 def test_the_students_ticks_stand_beside_the_teachers():

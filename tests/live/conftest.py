@@ -13,6 +13,7 @@ import sys
 from pathlib import Path
 
 import browser
+import nbformat
 import pytest
 from reader import Page
 
@@ -55,7 +56,7 @@ FILM = """# Films
 """
 LANGUAGE = {"language_info": {"name": "python", "pygments_lexer": "ipython3"}}
 PAGES = {
-    "index.md": "# Home\n\n```{toctree}\nscenes\nfilm\nplain\nlab\n```\n",
+    "index.md": "# Home\n\n```{toctree}\nscenes\nfilm\nplain\nlab\nafterwards\n```\n",
     "scenes.md": SCENES,
     "film.md": FILM,
     "plain.md": "# Plain\n\nNothing lives here.\n",
@@ -69,26 +70,37 @@ def require(reason: str) -> None:
     pytest.skip(reason)
 
 
+cell, text = nbformat.v4.new_code_cell, nbformat.v4.new_markdown_cell
+IMPORTS = (
+    "import matplotlib.pyplot as plt\nimport numpy as np\nimport pfkit as pf\n"
+    "from pfkit.labs import lab3 as lab"
+)
+
+
+def pair(item: str, stub: str, name: str, verb: str = "check") -> list:
+    """An answer cell and the cell that checks it."""
+    return [
+        cell(stub, metadata={"answer": item}),
+        cell(f'lab.{verb}("{item}", {name})', metadata={"check": item}),
+    ]
+
+
+def written(cells: list) -> str:
+    """A notebook of these cells."""
+    for number, one in enumerate(cells):
+        one["id"] = f"c{number}"
+    return nbformat.writes(nbformat.v4.new_notebook(cells=cells, metadata=LANGUAGE))
+
+
 def lab_notebook() -> str:
     """A notebook of three questions of lab 3 and two cells that only this test has."""
-    import nbformat
-
     from pfkit.labs.lab3 import LAB
 
     options = LAB.items["p1a"].options
     listed = "\n".join(f"* ({letter}) {says}" for letter, says in options.items())
-    cell, text = nbformat.v4.new_code_cell, nbformat.v4.new_markdown_cell
-
-    def pair(item: str, stub: str, name: str, verb: str = "check"):
-        return [
-            cell(stub, metadata={"answer": item}),
-            cell(f'lab.{verb}("{item}", {name})', metadata={"check": item}),
-        ]
-
     cells = [
         text("# A lab"),
-        cell("import matplotlib.pyplot as plt\nimport numpy as np\nimport pfkit as pf\n"
-             "from pfkit.labs import lab3 as lab"),
+        cell(IMPORTS),
         text(f"What are the particles?\n\n{listed}"),
         *pair("p1a", "p1a = ...", "p1a"),
         *pair("p4a", "p4a = ...", "p4a", "predict"),
@@ -97,9 +109,21 @@ def lab_notebook() -> str:
         cell('circular_mean = lab.use("p5b", circular_mean)'),
         cell("print(circular_mean(np.array([3.1, -3.1]), np.array([0.5, 0.5])))"),
     ]  # fmt: skip
-    for number, one in enumerate(cells):
-        one["id"] = f"c{number}"
-    return nbformat.writes(nbformat.v4.new_notebook(cells=cells, metadata=LANGUAGE))
+    return written(cells)
+
+
+def afterwards_notebook() -> str:
+    """A number of one's own, a text with a rubric, and a function with a worked answer."""
+    stub = 'def circular_mean(theta, w):\n    """Mean direction."""\n    ...'
+    cells = [
+        text("# What comes after a check"),
+        cell(IMPORTS),
+        *pair("p1b", "p1b = ...", "p1b"),
+        *pair("p3c", 'p3c = "..."', "p3c", "answer"),
+        *pair("p5b", stub, "circular_mean"),
+        cell('# shows the worked answer once yours passed\nlab.solution("p5b")'),
+    ]
+    return written(cells)
 
 
 @pytest.fixture(scope="session")
@@ -112,7 +136,8 @@ def site(tmp_path_factory) -> Path:
         require(f"Python for the page could not be built: {done.stdout} {done.stderr}")
     source = tmp_path_factory.mktemp("small_book")
     conf = CONF.format(extensions=str(ROOT / "book" / "_ext"))
-    for name, body in {**PAGES, "conf.py": conf, "lab.ipynb": lab_notebook()}.items():
+    notebooks = {"lab.ipynb": lab_notebook(), "afterwards.ipynb": afterwards_notebook()}
+    for name, body in {**PAGES, "conf.py": conf, **notebooks}.items():
         (source / name).write_text(body, encoding="utf-8")
     out = source / "_build"
     built = subprocess.run(
