@@ -18,8 +18,8 @@ if that is not there, the build says so and the pages keep recordings and stills
 Cells of a notebook with the metadata ``answer`` become editors, and the check cells after them
 become their Check button. A cell with ``lab.solution("id")`` gives way to the worked answer of that
 item, which shows once it passed or after three hints. Nothing is written twice: the page gets the
-notebook's own code cells. A question that asks for a letter (`Choice`, `Prediction`) is answered with radio buttons; their
-texts are the lab's own, and they write the cell's code.
+notebook's own code cells. A question that asks for a letter (`Choice`, `Prediction`) is answered
+with radio buttons; their texts are the lab's own, and they write the cell's code.
 
 Only pages with live parts load any of it.
 """

@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from pfkit.explore import scene
+from pfkit.labs.lab3 import LAB as LAB3
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -66,6 +67,20 @@ def test_cells_of_a_lab(live_page):
     assert kinds == ["code", "answer", "check", "check", "code"]
     assert [c["index"] for c in found["cells"]] == [0, 1, 2, 3, 5]
     assert len(found["cells"][1]["version"]) >= 8
+
+
+def test_rubrics_and_worked_answers_come_from_the_lab(live_page):
+    cells = [
+        cell("from pfkit.labs import lab3 as lab"),
+        cell("p3c = ...", answer="p3c"),
+        cell("def circular_mean(theta, w): ...", answer="p5b"),
+        cell('# folded\nlab.solution("p5b")'),
+        cell("p1a = ...", answer="p1a"),
+    ]
+    _, text, code, shown, letter = live_page.read_lab(cells)["cells"]
+    assert text["rubric"] == list(LAB3.items["p3c"].rubric) and code["worked"]
+    assert (shown["kind"], shown["item"]) == ("solution", "p5b")
+    assert "worked" not in letter and "rubric" not in letter
 
 
 def test_letters_to_choose_come_from_the_lab(live_page):
