@@ -42,22 +42,24 @@ byhand.wrong("""no-share: adds the floor without the factor 1 - epsilon on the h
 )
 
 peak = Numeric(
-    """Variance at which the peak density is 1e-4 per square pixel
+    """Variance at which the peak density is {gate} per square pixel
     The peak in the plane is 1 / (2 pi sigma^2).
-    Set it equal to 1e-4 and solve for sigma^2.
-    10000 / (2 pi).""",
-    1592.0,
+    Set it equal to {gate} and solve for sigma^2.
+    1 / (2 pi {gate}).""",
+    lambda gate: 1 / (2 * np.pi * gate),
     tol=8.0,
     unit="px^2",
+    world={"gate": 1e-4},
+    draw=lambda rng: {"gate": int(rng.integers(6, 30)) / 1e5},
 )
 peak.wrong("""sd: is the standard deviation, not the variance
     Which of the two is asked?
     Do not take the root.
-    10000 / (2 pi).""")(39.9, when=lambda x: abs(float(x) - 39.9) < 0.5)
+    1 / (2 pi {gate}).""")(lambda gate: np.sqrt(1 / (2 * np.pi * gate)))
 peak.wrong("""one-dimension: uses the peak of a Gaussian on the line
     How many coordinates does a report have?
     In the plane the constant is 1 / (2 pi sigma^2).
-    10000 / (2 pi).""")(1.59e7, when=lambda x: float(x) > 1e7)
+    1 / (2 pi {gate}).""")(lambda gate: 1 / (2 * np.pi * gate**2), when=lambda x: float(x) > 1e5)
 
 unit = Choice("""Millimetres instead of pixels
     a  nothing, it is a probability

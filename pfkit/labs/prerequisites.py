@@ -19,28 +19,43 @@ column = Choice("""What does np.arange(6).reshape(2, 3)[:, 1] give?
 
 CHANCE = Question("Probability")
 
+
+def _detector(share, hit, false):
+    """Share of doors in the corridor; how often the detector fires at a door, and at a wall."""
+    doors, walls = share * hit, (1 - share) * false
+    told = {"share": share, "hit": hit, "false": false, "rest": 1 - share}
+    return {k: round(v, 4) for k, v in {**told, "doors": doors, "walls": walls}.items()}
+
+
 door = Numeric(
-    """Probability of a door after the detector fired
+    """Probability of a door after the detector fired: {share} of the corridor are doors, it fires
+         at {hit} of the doors and at {false} of the walls
     Of 100 places, how many are doors that fire, and how many are walls that fire?
-    Doors that fire: 0.25 times 0.8. Walls that fire: 0.75 times 0.2.
-    0.20 / (0.20 + 0.15).""",
-    0.2 / 0.35,
+    Doors that fire: {share} times {hit}. Walls that fire: {rest} times {false}.
+    {doors} / ({doors} + {walls}).""",
+    lambda doors, walls, **_: doors / (doors + walls),
     tol=0.005,
+    world=_detector(0.25, 0.8, 0.2),
+    draw=lambda rng: _detector(
+        rng.choice([0.1, 0.2, 0.25, 0.3, 0.4]),
+        rng.choice([0.7, 0.75, 0.8, 0.9]),
+        rng.choice([0.1, 0.15, 0.2, 0.25]),
+    ),
 )
 door.wrong("""forgets-the-prior: is how often a door makes the detector fire, not how often
          firing means a door
-    Three quarters of the corridor are walls. Where are they in your answer?
-    Weigh 0.8 by the share of doors and 0.2 by the share of walls.
-    0.25 * 0.8 / (0.25 * 0.8 + 0.75 * 0.2).""")(0.8)
+    {rest} of the corridor are walls. Where are they in your answer?
+    Weigh {hit} by the share of doors and {false} by the share of walls.
+    {share} * {hit} / ({share} * {hit} + {rest} * {false}).""")(lambda hit, **_: hit)
 door.wrong("""not-normalised: is the probability of a door and a firing, not yet divided by that
          of a firing
     Door and wall, both after a firing, must sum to one.
-    Divide by 0.20 + 0.15.
-    0.20 / 0.35.""")(0.2)
+    Divide by {doors} + {walls}.
+    {doors} / ({doors} + {walls}).""")(lambda doors, **_: doors)
 door.wrong("""ignores-the-firing: is what you knew before the detector fired
     What does the firing change?
-    A door fires four times as often as a wall.
-    0.25 * 0.8 / (0.25 * 0.8 + 0.75 * 0.2).""")(0.25)
+    A door fires more often than a wall.
+    {share} * {hit} / ({share} * {hit} + {rest} * {false}).""")(lambda share, **_: share)
 
 spread = Numeric(
     """Variance of one range; standard deviation of the mean of 100

@@ -34,21 +34,23 @@ held.wrong("""whole-rows: counts whole rows and forgets where the sightings cut 
     0.02 + 0.06 + 0.06 m.""")(0.20)
 
 lever = Numeric(
-    """Sideways error after 40 m with the heading 3 degrees off
+    """Sideways error after {way} m with the heading {off} degrees off
     Draw the two straight lines; they open like scissors.
     The gap is the way times the sine of the angle.
-    40 m times sin(3 degrees), and 3 degrees are 0.0524 rad.""",
-    2.09,
+    {way} m times sin({off} degrees), and a degree is pi / 180 rad.""",
+    lambda way, off: round(way * np.sin(np.radians(off)), 4),
     tol=0.02,
+    world={"way": 40, "off": 3},
+    draw=lambda rng: {"way": int(rng.integers(25, 60)), "off": int(rng.integers(2, 7))},
 )
-lever.wrong("""degrees: takes the sine of 3 radians
+lever.wrong("""degrees: takes the sine of {off} radians
     Which unit does np.sin want?
-    3 degrees are 3 pi / 180 rad.
-    sin(0.0524) = 0.0523.""")(5.64)
+    {off} degrees are {off} pi / 180 rad.
+    np.sin(np.radians({off})).""")(lambda way, off: way * np.sin(off))
 lever.wrong("""cosine: is the error along the way, not across it
     Which error is larger, along the way or across?
     Along the way it is 1 - cos, across it is sin.
-    Use the sine.""")(0.055)
+    Use the sine.""")(lambda way, off: way * (1 - np.cos(np.radians(off))))
 
 READING_AND_CALIBRATING = Question("Reading and calibrating", id="2")
 
