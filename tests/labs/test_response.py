@@ -192,5 +192,5 @@ def test_a_difference_far_below_the_scatter_is_let_pass():
 
 def test_independent_answers_seldom_seem_to_go_together():
     rng = np.random.default_rng(7)
-    fails = sum(same_mean()(rng.normal(size=(24, 4, 2))) is not True for _ in range(3000))
+    fails = sum(same_mean(5.0)(rng.normal(size=(24, 4, 2))) is not True for _ in range(3000))
     assert fails == 0
