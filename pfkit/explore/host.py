@@ -52,9 +52,9 @@ class Host:
         -------
         drawing : float32 array (n,)
         report : str
-            JSON with ticks, readouts (one for each world), values of all controls, the last phase
-            and its sentence, missions done, what was told since the last report, and the ticks one
-            can go back to.
+            JSON with ticks (and whether one has begun), readouts (one for each world), values of
+            all controls, the last phase and its sentence, missions done, what was told since the
+            last report, and the ticks one can go back to.
         """
         run = self.runs[key]
         for operation in json.loads(operations):
@@ -83,6 +83,7 @@ def report(worlds: list[Scene]) -> dict[str, Any]:
     first = worlds[0]
     return {
         "ticks": first.ticks,
+        "begun": first.begun,
         "seed": first.seed,
         "readouts": [_clean(world.readouts()) for world in worlds],
         "values": first.values,

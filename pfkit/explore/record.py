@@ -4,7 +4,7 @@ A recording is made by the scene itself, so it shows what the live run will do; 
 from the same seed, a reader who touches a control goes on from the very frame on the screen.
 
 A few frames a second are stored, and the page moves between them (`tween` in `web/render.js`). Each
-record's numbers are rounded to a thousandth of their range in the whole run and stored as
+record's numbers are rounded to a five-hundredth of their range in the whole run and stored as
 differences: of neighbours in one frame, or from the frame before, whichever is smaller. Where the
 scene keeps a `lineage`, each particle starts from the one it descends from, so that copies part
 from their ancestor before the reader's eyes. `decode` in `web/render.js` is the inverse.
@@ -26,7 +26,7 @@ from pfkit.explore.operations import FEWEST, NUMBER, Operation, operation
 from pfkit.explore.pen import STYLES
 from pfkit.explore.scene import Scene
 
-LEVELS = 1000
+LEVELS = 500  # steps in the range of a number: about a pixel
 EXACT, BESIDE, BEFORE, DESCENT = range(4)  # how the numbers of a record are stored
 CLOUD = STYLES.index("particles")
 SETS = (NUMBER["points"], NUMBER["quills"])  # of which the order means nothing

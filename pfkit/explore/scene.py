@@ -296,9 +296,14 @@ class Scene:
             self._note(*ended)
         self._end_tick()
 
+    @property
+    def begun(self) -> bool:
+        """Is a tick under way?"""
+        return self._tick is not None
+
     def finish(self) -> None:
         """End the tick that has begun, if one has."""
-        if self._tick is not None:
+        if self.begun:
             self.step()
 
     def to_phase(self, most: int) -> bool:

@@ -54,7 +54,7 @@ def film(request):
     return drawn, answer["told"], [np.array(d, float) for d in answer["between"]]
 
 
-def test_a_frame_is_what_the_scene_drew_to_a_thousandth(film):
+def test_a_frame_is_what_the_scene_drew_to_a_pixel(film):
     drawn, told, _ = film
     ranges: dict = {}
     for (drawing, _), _ in drawn:

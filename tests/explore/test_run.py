@@ -54,6 +54,17 @@ def test_what_the_reader_did_is_done_again_on_the_way_back():
     assert np.array_equal(do(["back", end])[0], there, equal_nan=True)
 
 
+def test_what_is_done_in_the_middle_of_a_tick_counts_after_it():
+    _, do = opened("drive", "localise")
+    _, told = do(["step", 11], ["phase", 5])
+    assert told["begun"] and told["ticks"] == 11 and told["phase"]["name"] == "predict"
+    _, told = do(["set", "sigma_r", 0.9])
+    assert not told["begun"] and told["ticks"] == 12
+    there, _ = do(["step", 20])
+    _, again = opened("drive", "localise")
+    assert np.array_equal(again(["step", 12], ["set", "sigma_r", 0.9], ["step", 20])[0], there)
+
+
 def test_after_a_way_back_something_else_can_happen():
     run, do = opened("drive", "kidnap", 2)
     do(["step", 60], ["set", "kidnap", True], ["step", 60], ["back", 50])

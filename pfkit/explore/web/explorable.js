@@ -299,6 +299,7 @@
         this.showRecorded();
       }
       if (this.mode !== "live") return;
+      if (!run) this.transport.began = 0; // who stands still is not late
       this.sayNews(run);
       if (this.many) this.many.work(run);
       if (this.fresh) this.draw(run, dt);
@@ -471,12 +472,15 @@
         this.ticks = 0;
       } else if (kind === "set" || kind === "hold" || kind === "other") {
         this.trim();
-        this.history.push([this.ticks, kind, ...what]);
+        this.history.push([this.tick, kind, ...what]);
       }
     }
 
+    /* The tick at which the next deed counts: one that has begun ends first. */
+    get tick() { return this.ticks + (this.mode === "live" && this.report?.begun ? 1 : 0); }
+
     /* After a way back something new happens: what was done later is no longer part of the run. */
-    trim() { this.history = this.history.filter(([tick]) => tick <= this.ticks); }
+    trim() { this.history = this.history.filter(([tick]) => tick <= this.tick); }
 
     keydown(e) {
       if (e.ctrlKey || e.metaKey || e.altKey) return;
@@ -606,7 +610,7 @@
 
     /* ---- the exact run in the address ------------------------------------------------------ */
     makeLink() {
-      const state = { id: this.o.id, seed: this.seed, n: this.ticks, v: {}, h: this.history };
+      const state = { id: this.o.id, seed: this.seed, n: this.tick, v: {}, h: this.history };
       for (const [k, v] of Object.entries(this.initial)) if (this.inputs[k]) state.v[k] = v;
       let text = JSON.stringify(state);
       const whole = text.length <= 6000 && !this.compared;
