@@ -152,19 +152,22 @@ def draw_charts(s: Scene, pen: Pen, landmarks: bool = True) -> None:
     if landmarks:
         pen.symbols("landmarks", "diamond", 0.06, 0.8, size=13)
         pen.text("ink", 0.18, 0.8, "landmark", size=11)
-    if not s.history:
-        return
-    share, error = np.array(s.history).T
+    share, error = np.array(s.history).reshape(-1, 2).T
     at = np.arange(160 - share.size, 160)
     pen.view((left, 0.40, width, 0.24), (0, 159), (0, 1))
     pen.line("muted", [0, 159], [s.values["threshold"]] * 2, width=1, dash=3)
-    pen.area("particles", [at[0], *at, at[-1]], [0, *share, 0], alpha=0.18)
-    pen.line("particles", at, share, width=2)
+    _chart(pen, "particles", at, share)
     pen.text("ink", 0, 1.13, "ESS / M, of 1", size=11)
     if "threshold" in (*s.panel.controls, *s.panel.more):
         pen.handle("threshold", 159, s.values["threshold"])
-    top = 1.0 if error.max() < 1 else 2.0 if error.max() < 2 else 5.0 if error.max() < 5 else 12.0
+    top = next((top for top in (1.0, 2.0, 5.0) if error.max(initial=0.0) < top), 12.0)
     pen.view((left, 0.04, width, 0.24), (0, 159), (0, top))
-    pen.area("estimate", [at[0], *at, at[-1]], [0, *np.minimum(error, top), 0], alpha=0.18)
-    pen.line("estimate", at, np.minimum(error, top), width=2)
+    _chart(pen, "estimate", at, np.minimum(error, top))
     pen.text("ink", 0, 1.13 * top, f"error, of {top:g} m", size=11)
+
+
+def _chart(pen: Pen, style: str, at: np.ndarray, values: np.ndarray) -> None:
+    """A curve above its own shade."""
+    if values.size:
+        pen.area(style, [at[0], *at, at[-1]], [0, *values, 0], alpha=0.18)
+        pen.line(style, at, values, width=2)

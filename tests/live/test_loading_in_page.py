@@ -111,7 +111,7 @@ def test_a_run_is_not_silent_though_nothing_happens(page):
     page.live(1)
     comb = page.explorable(1)
     page.tab.evaluate(f"{comb}.news.length = 0, said.length = 0, {comb}.saidAt -= 60000")
-    page.tab.wait_for_function("said.some((text) => text.includes('strays furthest'))")
+    page.tab.wait_for_function("said.some((text) => text.includes('founders are left'))")
 
 
 # ---- ticks ------------------------------------------------------------------------------------

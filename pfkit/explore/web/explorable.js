@@ -249,7 +249,7 @@
       this.ticks = Math.round(Math.min(this.position, last) * this.every);
       this.transport.show(this.ticks, [0, last * this.every]);
       const told = frame.report.phase.sentences[0];
-      if (told && (this.film || performance.now() - this.saidAt > QUIET)) this.say(told);
+      if (told && !this.starting && (this.film || performance.now() - this.saidAt > QUIET)) this.say(told);
     }
 
     /* ---- one frame ------------------------------------------------------------------------ */
@@ -391,6 +391,10 @@
       this.transport.playing(on);
       if (on && this.film && this.position >= this.frames.length - 1) this.position = 0;
       if (on || !this.report) return;
+      if (this.mode === "recorded") {
+        this.position = this.at; // what stands still is a frame that was stored, with its readouts
+        this.showRecorded();
+      }
       this.tell(this.report);
       if (this.mode === "live") this.say("Paused. " + this.sentence());
     }
