@@ -44,9 +44,7 @@ LIMITS = {
     "experiments": (2, 10),
 }
 # (topic, what): (least, most, why)
-EXCEPTIONS: dict[tuple[str, str], tuple[int, int, str]] = {
-    ("motion", "words"): (2200, 3300, "four vehicles and three printed equations to read"),
-}
+EXCEPTIONS: dict[tuple[str, str], tuple[int, int, str]] = {}
 
 LAB_CALL = re.compile(r"\blab\.(check|use|predict|answer)\(\s*[\"']([\w.-]+)[\"']")
 

@@ -39,6 +39,7 @@ SCENES = {
     "office": ("pfkit.explore.office", "Office"),
     "story": ("pfkit.explore.story", "Story"),
     "proposal": ("pfkit.explore.proposal", "Proposal"),
+    "square": ("pfkit.explore.square", "Square"),
 }
 
 

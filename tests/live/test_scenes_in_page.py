@@ -18,6 +18,7 @@ MOVES = {  # a control that changes the run, and one that restarts it
     "corridor": [["set", "hit", 0.95], ["set", "doors", "three"]],
     "banana": [["set", "a1", 0.4], ["set", "route", "corner"]],
     "exact": [["set", "sigma_r", 0.9], ["set", "M", 300]],
+    "square": [["set", "axle", 1.5], ["set", "way", "cw"]],
     "office": [["set", "sigma_hit", 0.4], ["set", "model", "beam"], ["set", "M", 300]],
 }
 

@@ -37,29 +37,50 @@ def sample(pose, u, alpha, rng):
     # END SOLUTION
 
 
-# %% wheels
-left, right = 0.1 * 8, 0.1 * 12
-wheels = ((left + right) / 2, (right - left) / 0.5, 1.0 / 0.8)
+# %% recover
+d, phi, left = pf.inverse_arc((1, 2, np.radians(90)), (1.75, 3.299, np.radians(40)))
+recover = (d / 2, phi / 2, left / 2)
 
-# %% vehicle
-vehicle = "b"
 
-# %% odometry
-rot1, trans, rot2 = pf.odometry_control([2, 1, np.radians(90)], [1, 2, np.radians(-150)])
-odometry = (np.degrees(rot1), trans, np.degrees(rot2))
+# %% invert
+def invert(pose0, pose1):
+    # BEGIN SOLUTION
+    dx, dy, change = pf.between(pose0, pose1)
+    beta = np.arctan2(dy, dx)
+    distance = np.hypot(dx, dy) / np.sinc(beta / np.pi)
+    return np.array([distance, 2 * beta, pf.wrap(change - 2 * beta)])
+    # END SOLUTION
 
-# %% drift
-drift = 0.02 * np.sqrt(np.sum(np.arange(1, 11) ** 2))
 
-# %% literal
-literal = "b"
+# %% jacobian
+jacobian = "b"
+
+
+# %% density
+def density(pose1, u, alpha, pose0):
+    # BEGIN SOLUTION
+    v, omega, dt = u
+    distance, turn, extra = invert(pose0, pose1)
+    errors = distance / dt - v, turn / dt - omega, extra / dt
+    log_p = 0
+    for error, a, b in zip(errors, alpha[::2], alpha[1::2]):
+        var = a * v**2 + b * omega**2
+        log_p = log_p - error**2 / (2 * var) - 0.5 * np.log(2 * np.pi * var)
+    bend = np.sinc(turn / 2 / np.pi)
+    chord = distance * bend
+    return log_p - np.log(chord * bend * dt**3 / 2)
+    # END SOLUTION
+
+
+# %% rescale
+rescale = 0.08 * 0.1 / 0.5
 
 
 # %% rigid_x
-def rigid_x(rng):
+def rigid_x(M, steps, rng):
     # BEGIN SOLUTION
-    own = common = rng.standard_normal((3, 500)) * [[0.1], [0.1], [0]]
-    for _ in range(12):
+    own = common = rng.standard_normal((3, M)) * [[0.1], [0.1], [0]]
+    for _ in range(steps):
         own, common = motion.sample(own, u, rng), together(common, u, rng)
     spread = [np.sqrt(cloud[:2].var(axis=1).sum()) for cloud in (own, common)]
     return spread[0] / spread[1]
@@ -67,11 +88,11 @@ def rigid_x(rng):
 
 
 # %% split_x
-def split_x(rng):
+def split_x(M, n, rng):
     # BEGIN SOLUTION
     model, spread = pf.VelocityMotion((0.02, 0, 0, 0)), []
-    for steps in (1, 16):
-        cloud = np.zeros((3, 2000))
+    for steps in (1, n):
+        cloud = np.zeros((3, M))
         for _ in range(steps):
             cloud = model.sample(cloud, np.array([1.0, 0.0, 4 / steps]), rng)
         spread.append(cloud[0].std())
