@@ -24,10 +24,9 @@ import math
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, require_count, require_finite, require_number
+from pfkit.errors import require_array, require_count, require_number, require_rng
 
 Array = NDArray[np.float64]
-NUMBER = (float, int, np.floating, np.integer)
 
 
 def log_gaussian(error: ArrayLike, sigma: float) -> Array:
@@ -49,7 +48,7 @@ def log_gaussian(error: ArrayLike, sigma: float) -> Array:
     ParameterError
         If sigma is not positive, or an error is not a number.
     """
-    return gaussian(require_finite("error", error), _scale(sigma))
+    return gaussian(require_array("error", error), require_number("sigma", sigma, "finite and > 0"))
 
 
 def gaussian(error: Array, sigma: float) -> Array:
@@ -58,6 +57,12 @@ def gaussian(error: Array, sigma: float) -> Array:
     log_p *= -0.5 / sigma**2
     log_p -= math.log(sigma * math.sqrt(2 * math.pi))
     return log_p
+
+
+def draw_normal(shape: int | tuple[int, ...], rng: np.random.Generator) -> Array:
+    """Draw standard normal numbers of that shape; refuse a generator that all share."""
+    require_rng(rng)
+    return rng.standard_normal(shape)
 
 
 def error_density(error: Array, sigma: float, nu: float) -> Array:
@@ -74,12 +79,6 @@ def error_density(error: Array, sigma: float, nu: float) -> Array:
     scaled = error / sigma
     constant = math.lgamma((nu + 1) / 2) - math.lgamma(nu / 2) - 0.5 * math.log(math.pi * nu)
     return constant - math.log(sigma) - 0.5 * (nu + 1) * np.log1p(scaled * scaled / nu)
-
-
-def _scale(sigma: float) -> float:
-    if not isinstance(sigma, NUMBER) or not 0 < sigma < math.inf:
-        raise ParameterError(f"sigma must be one number > 0, got {sigma!r}; 0 has no density")
-    return sigma
 
 
 def chi2_tail(x: float, k: int) -> float:
@@ -100,7 +99,7 @@ def chi2_tail(x: float, k: int) -> float:
         If x is not a number or k is not a whole number of at least 1.
     """
     k = require_count("degrees of freedom k", k)
-    x = require_number("x", x)
+    x = require_number("x", x, "a number")
     if x <= 0:
         return 1.0
     if math.isinf(x):
@@ -129,8 +128,7 @@ def chi2_quantile(p: float, k: int) -> float:
     ParameterError
         If p is not in [0, 1) or k is not a whole number of at least 1.
     """
-    if not 0 <= require_number("p", p) < 1:
-        raise ParameterError(f"p must be in [0, 1), got {p}; the quantile of 1 is infinite")
+    p = require_number("p", p, "in [0, 1)")
     low, high = 0.0, 1.0
     while chi2_tail(high, k) > 1 - p:
         high *= 2

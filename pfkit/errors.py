@@ -16,14 +16,15 @@ Inside the package nothing is checked twice: functions that begin with an unders
 from __future__ import annotations
 
 import math
-import os
-from pathlib import Path
+from collections.abc import Callable
+from functools import lru_cache
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 Shape = int | tuple[int, ...]
+Wanted = tuple[Any, ...]
 
 
 class PfkitError(ValueError):
@@ -54,70 +55,84 @@ def as_numbers(name: str, value: Any, error: type[PfkitError] = ParameterError) 
     """Return `value` as a float array; raise `error` if it does not consist of numbers."""
     if type(value) is np.ndarray and value.dtype == np.float64:
         return value  # the common case, inside a filter
-    try:
-        array = np.asarray(value)
-    except ValueError:  # a ragged list
-        array = np.asarray("ragged")
+    array = np.asarray(value)
     if array.dtype.kind not in "fiub":  # no text, objects, complex numbers or dates
         raise error(f"{name} must be real numbers, got {value!r:.80}; pass floats or an array")
     return array.astype(float, copy=False)
 
 
-def require_finite(name: str, value: Any, error: type[PfkitError] = ParameterError) -> np.ndarray:
-    """Return `value` as a float array; raise `error` if it is not numeric and finite."""
+RULES: dict[str, tuple[Callable[[np.ndarray], Any], str]] = {
+    "finite": (np.isfinite, "remove or repair that value"),
+    "a number": (lambda x: x == x, "remove or repair that value"),
+    "not infinite": (lambda x: ~np.isinf(x), "NaN says that nobody knows, infinity nothing"),
+    "> 0": (lambda x: x > 0, "infinity switches it off"),
+    ">= 0": (lambda x: x >= 0, "drop the sign; of a logarithm take exp"),
+    "finite and > 0": (lambda x: (x > 0) & (x < math.inf), "a noise of 0 has no density"),
+    "finite and >= 0": (lambda x: (x >= 0) & (x < math.inf), "drop the sign"),
+    "in [0, 1]": (lambda x: (x >= 0) & (x <= 1), "it is a share or a probability"),
+    "in (0, 1]": (lambda x: (x > 0) & (x <= 1), "a share of nothing has no mean"),
+    "in [0, 1)": (lambda x: (x >= 0) & (x < 1), "at 1 the answer is infinite"),
+    "in (0, 1)": (lambda x: (x > 0) & (x < 1), "it is a probability, and neither 0 nor 1"),
+    "whole": (lambda x: np.isfinite(x) & (x == np.floor(x)), "round it"),
+    "whole and >= 1": (lambda x: (x < math.inf) & (x == np.floor(x)) & (x >= 1), "round it"),
+}
+"""What numbers may have to be: the words of the message, their meaning, the remedy."""
+
+
+@lru_cache(maxsize=1024)
+def _fits(shape: tuple[int, ...], wanted: Wanted) -> bool:
+    """Whether a shape is the wanted one: a number is a length, a name any length but 0."""
+    if wanted[:1] == (...,):
+        return wanted == (...,) or _fits(shape[::-1], wanted[::-1])
+    if wanted[-1:] == (...,):
+        return len(shape) >= len(wanted) - 1 and _fits(shape[: len(wanted) - 1], wanted[:-1])
+    pairs = zip(shape, wanted, strict=False)
+    return len(shape) == len(wanted) and all(n == w or (n > 0 and type(w) is str) for n, w in pairs)
+
+
+def _written(wanted: Wanted) -> str:
+    """A wanted shape as in the docstrings: ``(3, ...)``, or ``(2, L), L >= 1``."""
+    words = ["..." if w is ... else str(w) for w in wanted]
+    least = [f", {w} >= 1" for w in wanted if isinstance(w, str)]
+    return f"({', '.join(words)}{',' * (len(words) == 1)})" + "".join(least)
+
+
+def require_array(
+    name: str,
+    value: Any,
+    shape: Wanted = (...,),
+    rule: str | None = "finite",
+    error: type[PfkitError] = ParameterError,
+) -> np.ndarray:
+    """Return `value` as a float array of the wanted shape whose numbers obey the rule, if any.
+
+    The shape is written as in the docstrings: ``(3, ...)`` for components first, ``(2, "L")`` for
+    any number of columns but none, ``(D, D)``. Raises `ShapeError`, or `error` for the numbers.
+    """
     array = as_numbers(name, value, error)
-    finite = np.isfinite(array)
-    if not finite.all():
-        bad = array[~finite].flat[0]
-        raise error(f"{name} must be finite, got {bad}; remove or repair that value")
+    if not _fits(array.shape, shape):
+        hint = "; transpose it" if array.ndim == 2 and _fits(array.shape[::-1], shape) else ""
+        raise ShapeError(
+            f"{name} must have shape {_written(shape)}, got {array.shape}{hint}: {value!r:.60}"
+        )
+    if rule is None:
+        return array
+    obeys, remedy = RULES[rule]
+    good = obeys(array)
+    if not good.all():
+        raise error(f"{name} must be {rule}, got {array[~good].flat[0]}; {remedy}")
     return array
 
 
-def require_positive(name: str, value: Any) -> np.ndarray:
-    """Return `value` as a float array; raise `ParameterError` unless every entry is > 0."""
-    array = require_finite(name, value)
-    if not (array > 0).all():
-        raise ParameterError(f"{name} must be > 0, got {array.min()}; a noise of 0 has no density")
-    return array
+def require_number(name: str, value: Any, rule: str = "finite") -> float:
+    """Return `value` as a float; raise unless it is one number by the rule."""
+    return float(require_array(name, value, (), rule))
 
 
-def require_non_negative(name: str, value: Any) -> np.ndarray:
-    """Return `value` as a float array; raise `ParameterError` unless every entry is >= 0."""
-    array = require_finite(name, value)
-    if not (array >= 0).all():
-        raise ParameterError(f"{name} must be >= 0, got {array.min()}; drop the sign")
-    return array
-
-
-def as_path(name: str, value: Any) -> Path:
-    """Return `value` as a path; raise `ParameterError` unless it is text or a path."""
-    if not isinstance(value, str | os.PathLike):
-        raise ParameterError(f"{name} must be a path, got {value!r:.60}; give its name as text")
-    return Path(value)
-
-
-def require_positive_number(name: str, value: Any) -> float:
-    """Return `value` as a float; raise `ParameterError` unless it is one finite number > 0."""
-    return _one(name, require_positive(name, value))
-
-
-def require_non_negative_number(name: str, value: Any) -> float:
-    """Return `value` as a float; raise `ParameterError` unless it is one finite number >= 0."""
-    return _one(name, require_non_negative(name, value))
-
-
-def _one(name: str, array: np.ndarray) -> float:
-    if array.ndim:
-        raise ParameterError(f"{name} must be one number, got {array!r:.60} of shape {array.shape}")
-    return float(array)
-
-
-def require_fraction(name: str, value: Any) -> float:
-    """Return `value` as a float; raise `ParameterError` unless it lies in [0, 1]."""
-    array = require_finite(name, value)
-    if array.ndim or not 0 <= array <= 1:
-        raise ParameterError(f"{name} must be one number in [0, 1], got {value!r}")
-    return float(array)
+def require_fields(thing: Any, **rules: str) -> None:
+    """Raise unless each named field of an object is one number by its rule."""
+    for name, rule in rules.items():
+        require_number(name, getattr(thing, name), rule)
 
 
 def require_count(name: str, value: Any, least: int = 1) -> int:
@@ -131,47 +146,22 @@ def require_count(name: str, value: Any, least: int = 1) -> int:
 def require_shape(name: str, value: Shape) -> tuple[int, ...]:
     """Read a number M, or a shape such as (B, M), as a tuple of whole numbers >= 1."""
     shape = value if isinstance(value, tuple) else (value,)
-    if not shape:
-        raise ParameterError(f"{name} must be a whole number or (B, M), got {value!r}")
     return tuple(require_count(name, n) for n in shape)
 
 
-def components_first(name: str, value: Any, n: int) -> np.ndarray:
-    """Return `value` as a float array; raise `ShapeError` unless its first axis has length `n`."""
-    array = as_numbers(name, value, ShapeError)
-    if array.ndim == 0 or array.shape[0] != n:
-        hint = "; transpose it" if array.ndim == 2 and array.shape[1] == n else ""
-        raise ShapeError(
-            f"{name} must have its {n} components first, shape ({n}, ...), got {array.shape}{hint}"
-        )
-    return array
-
-
-def require_components(
-    name: str, value: Any, n: int, error: type[PfkitError] = ParameterError
-) -> np.ndarray:
-    """Return `value` as a finite float array whose first axis has length `n`.
-
-    Raises `ShapeError` if it does not have that shape, and `error` if it is not finite.
-    """
-    return require_finite(name, components_first(name, value, n), error)
-
-
-def require_plane(state: Any) -> np.ndarray:
-    """Return a state (D, ...) of any dimension D >= 2 as a finite array: x and y come first."""
-    array = require_finite("state", state)
-    if array.ndim == 0 or array.shape[0] < 2:
-        raise ShapeError(f"state must have x and y first, shape (2, ...), got {array.shape}")
-    return array
+def require_bounds(value: Any) -> tuple[float, float, float, float]:
+    """Return ``(x_min, x_max, y_min, y_max)`` as four floats that span an area."""
+    x0, x1, y0, y1 = require_array("bounds", value, (4,)).tolist()
+    if not (x0 < x1 and y0 < y1):
+        raise ParameterError(f"bounds must be (x_min, x_max, y_min, y_max), got {value!r:.80}")
+    return x0, x1, y0, y1
 
 
 def require_covariance(name: str, value: Any, n: int) -> np.ndarray:
     """Return a covariance (n, n) as an array; standard deviations (n,), maybe 0, become one."""
-    Sigma = require_finite(name, value)
-    if n == 0 or Sigma.shape not in ((n,), (n, n)):
-        raise ShapeError(f"{name} must have shape {(n, n)} or {(n,)}, n >= 1, got {Sigma.shape}")
-    if Sigma.ndim == 1:
-        return np.diag(require_non_negative(name, Sigma) ** 2)
+    if np.ndim(value) == 1:
+        return np.diag(require_array(name, value, (n,), "finite and >= 0") ** 2)
+    Sigma = require_array(name, value, (n, n))
     lowest, slack = np.linalg.eigvalsh(Sigma)[0], 1e-9 * max(np.trace(Sigma), 1.0)
     if np.abs(Sigma - Sigma.T).max() > slack or lowest < -slack:
         raise ParameterError(
@@ -200,24 +190,3 @@ def require_rng(rng: Any) -> None:
 
 
 _NO_GENERATOR = (int, np.integer, type(None), ModuleType, np.random.RandomState)
-
-
-def require_method(name: str, model: Any, *methods: str) -> None:
-    """Raise `ParameterError` unless `model` has the methods a caller is about to use."""
-    for method in methods:
-        if not callable(getattr(model, method, None)):
-            raise ParameterError(
-                f"{name} must have a method {method}(...), got {model!r:.60}; "
-                "pass a model object, not its class or a number"
-            )
-
-
-def require_number(name: str, value: Any, above: float = -math.inf) -> float:
-    """Return `value` as a float; raise `ParameterError` unless it is one number > `above`.
-
-    Infinity is a number here, because it switches a bound off; NaN is not.
-    """
-    array = as_numbers(name, value)
-    if array.ndim or not array > above:
-        raise ParameterError(f"{name} must be one number > {above}, got {value!r:.60}")
-    return float(array)

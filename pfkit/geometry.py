@@ -21,14 +21,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    as_numbers,
-    components_first,
-    require_components,
-    require_finite,
-)
+from pfkit.errors import require_array
 
 TWO_PI = 2.0 * np.pi
 
@@ -56,14 +49,7 @@ def wrap(angle: ArrayLike) -> NDArray[np.float64]:
     >>> wrap([0.0, np.pi, -np.pi, 2 * np.pi]).round(6)
     array([0.      , 3.141593, 3.141593, 0.      ])
     """
-    return _wrap(_known_or_nan("angle", as_numbers("angle", angle)))
-
-
-def _known_or_nan(name: str, values: NDArray[np.float64]) -> NDArray[np.float64]:
-    """Let NaN, "nobody knows", pass; refuse infinity, which nobody means."""
-    if np.isinf(values).any():
-        raise ParameterError(f"{name} must not be infinite, got inf; remove or repair that value")
-    return values
+    return _wrap(require_array("angle", angle, rule="not infinite"))
 
 
 def _wrap(angle: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -96,7 +82,9 @@ def compose(pose: ArrayLike, motion: ArrayLike) -> NDArray[np.float64]:
     >>> compose([1.0, 2.0, np.pi / 2], [3.0, 0.0, 0.0]).round(6)  # three metres ahead
     array([1.      , 5.      , 1.570796])
     """
-    return _compose(require_components("pose", pose, 3), require_components("motion", motion, 3))
+    return _compose(
+        require_array("pose", pose, (3, ...)), require_array("motion", motion, (3, ...))
+    )
 
 
 def _compose(pose: NDArray[np.float64], motion: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -122,7 +110,7 @@ def inverse(pose: ArrayLike) -> NDArray[np.float64]:
     ShapeError, ParameterError
         If the first axis does not have length 3, or a value is not finite.
     """
-    return _inverse(require_components("pose", pose, 3))
+    return _inverse(require_array("pose", pose, (3, ...)))
 
 
 def _inverse(pose: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -150,10 +138,8 @@ def between(pose0: ArrayLike, pose1: ArrayLike) -> NDArray[np.float64]:
     ShapeError, ParameterError
         If the first axis of either argument does not have length 3, or a value is infinite.
     """
-    first, second = (
-        _known_or_nan(name, components_first(name, pose, 3))
-        for name, pose in (("pose0", pose0), ("pose1", pose1))
-    )
+    first = require_array("pose0", pose0, (3, ...), "not infinite")
+    second = require_array("pose1", pose1, (3, ...), "not infinite")
     return _compose(_inverse(first), second)
 
 
@@ -186,12 +172,9 @@ def circular_mean(theta: ArrayLike, w: ArrayLike | None = None) -> NDArray[np.fl
     >>> round(float(circular_mean(np.radians([350.0, 30.0]))), 6)  # 10 degrees, not 190
     0.174533
     """
-    theta = require_finite("theta", theta)
-    weights = np.ones(()) if w is None else require_finite("w", w)
-    if theta.ndim == 0 or theta.size == 0:
-        raise ShapeError(f"theta must have shape (..., M) with M >= 1, got {theta.shape}")
-    if weights.shape not in ((), theta.shape, theta.shape[-1:]):
-        raise ShapeError(f"w must have the shape of theta, {theta.shape}, got {weights.shape}")
+    theta = require_array("theta", theta, (..., "M"))
+    w = 1.0 if w is None else w
+    weights = require_array("w", w, theta.shape[theta.ndim - np.ndim(w) :])  # of its last axes
     return np.arctan2(
         np.sum(weights * np.sin(theta), axis=-1), np.sum(weights * np.cos(theta), axis=-1)
     )

@@ -94,7 +94,7 @@ def test_the_circular_mean_crosses_the_cut():
 
 
 def test_weights_must_belong_to_the_angles():
-    with pytest.raises(pf.ShapeError, match=r"shape of theta, \(3,\), got \(2,\)"):
+    with pytest.raises(pf.ShapeError, match=r"w must have shape \(3,\), got \(2,\)"):
         pf.circular_mean(np.zeros(3), np.ones(2))
 
 

@@ -33,11 +33,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import (
-    ShapeError,
-    require_count,
-    require_finite,
-)
+from pfkit.errors import ShapeError, require_array, require_count
 from pfkit.exact.posegrid import PoseGrid
 from pfkit.particles.particle_set import Particles
 
@@ -88,9 +84,7 @@ def equal_mass_boxes(p: Array, bins: int) -> NDArray[np.int64]:
     -----
     O(N log bins) for N cells: each level of cuts looks at each cell once.
     """
-    p = require_finite("p", p)
-    if p.ndim != 3 or (p < 0).any() or not p.any():
-        raise ShapeError(f"p must be a block (n_x, n_y, n_theta) of masses, got shape {p.shape}")
+    p = require_array("p", p, ("n_x", "n_y", "n_theta"), "finite and >= 0")
     label = np.zeros(p.shape, dtype=np.int64)
     whole = tuple(slice(0, n) for n in p.shape)
     heap = [(-float(p.sum()), 0, whole)]
@@ -172,8 +166,6 @@ def kl_divergence(bel: Particles, grid: PoseGrid, bins: int = 64) -> Divergence:
     q = p, counting alone makes the log ratios vary by (C_+ - 1) / n; what is left then is the
     variance of a chi-square, the last term.
     """
-    if bel.state.shape[0] != 3:
-        raise ShapeError(f"the grid holds poses, the particles have {bel.state.shape[0]} rows")
     box = equal_mass_boxes(grid.p, bins).ravel()
     p = _shares(box, grid.p)
     cell, inside = grid.index(bel.state)

@@ -25,14 +25,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ParameterError,
-    ShapeError,
-    require_components,
-    require_finite,
-    require_number,
-)
+from pfkit.errors import DataError, ParameterError, require_array, require_number
 from pfkit.exact.kalman import Gaussian, angles_of, condition, wrap_rows
 from pfkit.geometry import circular_mean
 from pfkit.models.landmark_sensors import LandmarkSensor
@@ -137,7 +130,7 @@ def gaussian_predict(
     -----
     Source: Probabilistic Robotics, Tables 3.3, 3.4, 7.2 and 7.4, with noise in the control.
     """
-    u, angles = require_finite("u", u), angles_of(bel.mean)
+    u, angles = np.asarray(u), angles_of(bel.mean)
     mean, Sigma, f = _augment(bel, lambda state, rng: motion.sample(state, u, rng))
     y, Y, cross = transform(f, mean, Sigma, angles)
     return Gaussian(wrap_rows(y, angles), Y), cross[: bel.mean.size]
@@ -177,10 +170,10 @@ def gaussian_update(
     -----
     Source: Probabilistic Robotics, Table 7.2, lines 9 to 20.
     """
-    gate = require_number("gate", gate, above=0.0)
+    gate = require_number("gate", gate, "> 0")
     if how_many(z) == 0:
         return bel, 0.0, 0
-    z = require_components("z", z, sensor.components, DataError)
+    z = require_array("z", z, (sensor.components, ...), error=DataError)
     total, rejected = 0.0, 0
     for column in z.reshape(z.shape[0], -1).T:
         named = isinstance(sensor, LandmarkSensor)
@@ -196,21 +189,13 @@ def gaussian_update(
 
 def _moments(f: Function, mean: ArrayLike, Sigma: ArrayLike) -> tuple[Array, Array]:
     """Check what both transforms need."""
-    mean, Sigma = require_finite("mean", mean), require_finite("Sigma", Sigma)
-    if mean.ndim != 1 or Sigma.shape != (mean.size, mean.size):
-        raise ShapeError(f"mean (N,) needs Sigma (N, N), got {mean.shape} and {Sigma.shape}")
-    return mean, Sigma
+    mean = require_array("mean", mean, ("N",))
+    return mean, require_array("Sigma", Sigma, (mean.size, mean.size))
 
 
 def _values(f: Function, points: Array) -> Array:
     """The values (n, P) of a function at points (N, P), which may be a student's own."""
-    value = require_finite("the value of f", f(points))
-    if value.ndim != 2 or value.shape[1] != points.shape[1]:
-        raise ShapeError(
-            f"f must return values (n, {points.shape[1]}) at points {points.shape}, got "
-            f"{value.shape}; one column per point"
-        )
-    return value
+    return require_array("the value of f", f(points), ("n", points.shape[1]))
 
 
 def _measure(sensor: Any, state: Array, rng: Any, which: dict[str, Any]) -> Array:

@@ -26,18 +26,12 @@ from itertools import product
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    DegenerateWeightsError,
-    require_count,
-    require_finite,
-    require_rng,
-)
+from pfkit.errors import DegenerateWeightsError, require_count
 from pfkit.exact.posegrid import PoseGrid
+from pfkit.filters.particle_filter import update
 from pfkit.geometry import compose
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel, how_many
-from pfkit.particles.particle_set import normalise
 
 Array = NDArray[np.float64]
 
@@ -76,7 +70,7 @@ def predict_by_convolution(
     adds at most a quarter of a cell squared to its variance. O(s N log N). The FFT rounds:
     what falls below 1e-15 of the largest cell is set to zero.
     """
-    u = _check(bel, u, motion, rng)
+    u = np.asarray(u)
     moves = motion.sample(np.zeros((3, require_count("draws", draws))), u, rng)
     if not moves.any():
         return bel
@@ -145,7 +139,7 @@ def predict_by_transport(
     -----
     Source: Probabilistic Robotics, Table 8.1, its integral done by sampling. O(K N).
     """
-    u, draws = _check(bel, u, motion, rng), require_count("draws", draws)
+    u, draws = np.asarray(u), require_count("draws", draws)
     occupied = np.flatnonzero(bel.p)
     mass, centre = bel.p.ravel()[occupied] / draws, bel.poses.reshape(3, -1)[:, occupied]
     p = np.zeros(bel.p.size)
@@ -154,12 +148,6 @@ def predict_by_transport(
         cell, inside = bel.index(motion.sample(start, u, rng))
         p += np.bincount(cell, mass * inside, p.size)
     return _keep(bel, p.reshape(bel.p.shape))
-
-
-def _check(bel: PoseGrid, u: ArrayLike, motion: MotionModel, rng: np.random.Generator) -> Array:
-    """Check what both predictions need; return the control as an array."""
-    require_rng(rng)
-    return require_finite("u", u)
 
 
 def _keep(bel: PoseGrid, p: Array) -> PoseGrid:
@@ -200,7 +188,5 @@ def update_grid(bel: PoseGrid, z: ArrayLike | None, sensor: SensorModel) -> tupl
     """
     if how_many(z) == 0:
         return bel, 0.0
-    prior = bel.particles()
-    log_likelihood = sensor.log_likelihood(require_finite("z", z, DataError), prior.state)
-    log_p, log_evidence = normalise(prior.log_w + log_likelihood)
-    return replace(bel, p=np.exp(log_p).reshape(bel.p.shape)), float(log_evidence)
+    posterior, log_evidence = update(bel.particles(), z, sensor)
+    return replace(bel, p=posterior.w.reshape(bel.p.shape)), float(log_evidence)

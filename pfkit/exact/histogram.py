@@ -26,8 +26,9 @@ from pfkit.errors import (
     DegenerateWeightsError,
     ParameterError,
     ShapeError,
-    require_finite,
-    require_fraction,
+    Wanted,
+    require_array,
+    require_number,
 )
 
 Array = NDArray[np.float64]
@@ -55,10 +56,8 @@ def shift_kernel(u: int, undershoot: float = 0.0, overshoot: float = 0.0) -> Arr
     ParameterError
         If u is not a whole number, or the two probabilities do not leave room for the rest.
     """
-    if not isinstance(u, int | np.integer) or isinstance(u, bool):
-        raise ParameterError(f"u must be a whole number of cells, got {u!r}; round it")
-    undershoot = require_fraction("undershoot", undershoot)
-    overshoot = require_fraction("overshoot", overshoot)
+    undershoot = require_number("undershoot", undershoot, "in [0, 1]")
+    overshoot = require_number("overshoot", overshoot, "in [0, 1]")
     if undershoot + overshoot > 1:
         raise ParameterError(
             f"undershoot + overshoot must be <= 1, got {undershoot + overshoot}; lower one of them"
@@ -99,8 +98,8 @@ def predict_1d(bel: ArrayLike, kernel: ArrayLike, ring: bool = False) -> Array:
     -----
     Source: Probabilistic Robotics, Table 4.1, line 3. Cost O(n (2 k + 1)).
     """
-    bel, kernel = _probabilities("bel", bel), _probabilities("kernel", kernel)
-    if kernel.ndim != 1 or kernel.size % 2 == 0:
+    bel, kernel = _probabilities("bel", bel), _probabilities("kernel", kernel, ("n",))
+    if kernel.size % 2 == 0:
         raise ShapeError(
             f"kernel must have an odd length, its middle for 'no move', got {kernel.shape}"
         )
@@ -141,14 +140,9 @@ def update_1d(bel: ArrayLike, likelihood: ArrayLike) -> tuple[Array, Array | np.
     -----
     Source: Probabilistic Robotics, Table 4.1, line 4.
     """
-    bel, likelihood = _probabilities("bel", bel), require_finite("likelihood", likelihood)
-    if likelihood.ndim == 0 or likelihood.shape[-1] != bel.shape[-1]:
-        raise ShapeError(
-            f"likelihood must hold one number per cell ({bel.shape[-1]}), "
-            f"got shape {likelihood.shape}"
-        )
-    if (likelihood < 0).any():
-        raise ParameterError(f"likelihood must be >= 0, got {likelihood.min()}")
+    bel = _probabilities("bel", bel)
+    cells = (..., bel.shape[-1])
+    likelihood = require_array("likelihood", likelihood, cells, "finite and >= 0")
     joint = likelihood * bel
     evidence = joint.sum(axis=-1, keepdims=True)
     if not (evidence > 0).all():
@@ -181,7 +175,8 @@ def door_likelihood(doors: ArrayLike, z: bool, hit: float, false: float) -> Arra
     ParameterError
         If doors or z are not True and False, or a rate is not in [0, 1].
     """
-    hit, false = require_fraction("hit", hit), require_fraction("false", false)
+    hit = require_number("hit", hit, "in [0, 1]")
+    false = require_number("false", false, "in [0, 1]")
     doors, report = np.asarray(doors), np.asarray(z)
     if doors.ndim != 1 or doors.size == 0 or not np.isin(doors, (0, 1)).all():
         raise ParameterError(f"doors must be a list of True and False, got {doors!r:.80}")
@@ -191,13 +186,9 @@ def door_likelihood(doors: ArrayLike, z: bool, hit: float, false: float) -> Arra
     return p_door if z else 1 - p_door
 
 
-def _probabilities(name: str, value: ArrayLike) -> Array:
+def _probabilities(name: str, value: ArrayLike, shape: Wanted = (..., "n")) -> Array:
     """Check that the last axis holds probabilities that sum to one."""
-    p = require_finite(name, value)
-    if p.ndim == 0 or p.shape[-1] == 0:
-        raise ShapeError(f"{name} must have shape (..., n) with n >= 1, got {p.shape}")
-    if (p < 0).any():
-        raise ParameterError(f"{name} must be >= 0, got {p.min()}; probabilities are")
+    p = require_array(name, value, shape, "finite and >= 0")
     if not np.allclose(p.sum(axis=-1), 1.0, atol=1e-9):
         raise ParameterError(
             f"{name} must sum to 1, got {p.sum(axis=-1).flat[0]:.6g}; divide it by its sum"

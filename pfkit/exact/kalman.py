@@ -24,13 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_covariance,
-    require_finite,
-    require_number,
-)
+from pfkit.errors import require_array, require_covariance, require_number
 from pfkit.geometry import wrap
 
 Array = NDArray[np.float64]
@@ -67,9 +61,7 @@ class Gaussian:
     Sigma: Array
 
     def __post_init__(self) -> None:
-        mean = require_finite("mean", self.mean)
-        if mean.ndim != 1:
-            raise ShapeError(f"mean must have shape (D,), got {mean.shape}")
+        mean = require_array("mean", self.mean, ("D",))
         object.__setattr__(self, "mean", mean)
         object.__setattr__(self, "Sigma", require_covariance("Sigma", self.Sigma, mean.size))
 
@@ -101,13 +93,9 @@ def kalman_predict(
     -----
     Source: Probabilistic Robotics, Table 3.1, lines 2 and 3.
     """
-    F, shift, D = require_finite("F", F), require_finite("shift", shift), bel.mean.size
-    Sigma_u = require_covariance("Sigma_u", Sigma_u, D)
-    if F.shape != (D, D) or shift.shape not in ((), (D,)):
-        raise ShapeError(
-            f"F must have shape {(D, D)} and shift {(D,)}, got {F.shape} and {shift.shape}"
-        )
-    return Gaussian(F @ bel.mean + shift, F @ bel.Sigma @ F.T + Sigma_u)
+    D = bel.mean.size
+    F, Sigma_u = np.asarray(F), require_covariance("Sigma_u", Sigma_u, D)
+    return Gaussian(F @ bel.mean + np.asarray(shift), F @ bel.Sigma @ F.T + Sigma_u)
 
 
 def kalman_update(
@@ -144,12 +132,10 @@ def kalman_update(
     -----
     Source: Probabilistic Robotics, Table 3.1, lines 4 to 6.
     """
-    gate = require_number("gate", gate, above=0.0)
-    z, H = require_finite("z", z), require_finite("H", H)
-    n, D = z.size, bel.mean.size
-    if z.ndim != 1 or H.shape != (n, D):
-        raise ShapeError(f"z (n,) needs H (n, {D}), got {z.shape} and {H.shape}")
-    Sigma_z = require_covariance("Sigma_z", Sigma_z, n)
+    gate = require_number("gate", gate, "> 0")
+    z = require_array("z", z, ("n",))
+    H = require_array("H", H, (z.size, bel.mean.size))
+    Sigma_z = require_covariance("Sigma_z", Sigma_z, z.size)
     cross = bel.Sigma @ H.T
     return condition(bel, z - H @ bel.mean, H @ cross + Sigma_z, cross, gate)
 
@@ -179,13 +165,7 @@ def condition(
     ParameterError
         If S is singular.
     """
-    try:
-        K = np.linalg.solve(S, cross.T).T
-    except np.linalg.LinAlgError:
-        raise ParameterError(
-            f"the innovation's covariance {S.tolist()!r:.60} is singular: neither belief nor "
-            "sensor has any noise in some direction; give the sensor some"
-        ) from None
+    K = np.linalg.solve(S, cross.T).T
     distance = float(innovation @ np.linalg.solve(S, innovation))
     if distance > gate:
         return bel, 0.0, True

@@ -21,16 +21,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.densities import log_gaussian
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_components,
-    require_finite,
-    require_fraction,
-    require_positive,
-    require_shape,
-    whole_cells,
-)
+from pfkit.errors import ParameterError, require_array, require_bounds, require_fields, whole_cells
 from pfkit.geometry import wrap
 from pfkit.particles.particle_set import Particles, normalise
 
@@ -62,20 +53,12 @@ class PoseGrid:
     lost: float = 0.0
 
     def __post_init__(self) -> None:
-        p, bounds = require_finite("p", self.p), require_finite("bounds", self.bounds)
-        if p.ndim != 3 or p.size == 0:
-            raise ShapeError(f"p must have shape (n_x, n_y, n_theta), got {p.shape}")
-        if (p < 0).any() or not np.isclose(p.sum(), 1.0):
-            raise ParameterError(
-                f"p must be >= 0 and sum to 1, got sum {p.sum():.6g}; divide it by its sum"
-            )
-        if bounds.shape != (4,) or not (bounds[0] < bounds[1] and bounds[2] < bounds[3]):
-            raise ParameterError(
-                f"bounds must be (x_min, x_max, y_min, y_max), got {self.bounds!r:.80}"
-            )
-        require_fraction("lost", self.lost)
+        p = require_array("p", self.p, ("n_x", "n_y", "n_theta"), "finite and >= 0")
+        if not np.isclose(p.sum(), 1.0):
+            raise ParameterError(f"p must sum to 1, got {p.sum():.6g}; divide it by its sum")
+        require_fields(self, lost="in [0, 1]")
         object.__setattr__(self, "p", p)
-        object.__setattr__(self, "bounds", tuple(bounds.tolist()))
+        object.__setattr__(self, "bounds", require_bounds(self.bounds))
 
     @property
     def low(self) -> Array:
@@ -102,7 +85,7 @@ class PoseGrid:
 
         A pose outside gets the cell of the block that is nearest to it.
         """
-        pose = require_components("pose", pose, 3)
+        pose = require_array("pose", pose, (3, ...))
         column = (slice(None), *(None,) * (pose.ndim - 1))
         at = whole_cells((pose - self.low[column]) / self.cell[column])
         n_x, n_y, n_theta = self.p.shape
@@ -136,10 +119,7 @@ def uniform_grid(shape: tuple[int, int, int], bounds: Bounds) -> PoseGrid:
     ShapeError, ParameterError
         If the shape is not three whole numbers >= 1, or the box is empty.
     """
-    cells = require_shape("shape", shape)
-    if len(cells) != 3:
-        raise ShapeError(f"shape must be (n_x, n_y, n_theta), got {shape!r:.60}")
-    return PoseGrid(np.full(cells, 1 / math.prod(cells)), bounds)
+    return PoseGrid(np.full(shape, 1 / math.prod(shape)), bounds)
 
 
 def gaussian_grid(
@@ -169,8 +149,7 @@ def gaussian_grid(
         If a shape is wrong, the box is empty, or a sigma is not positive.
     """
     grid = uniform_grid(shape, bounds)
-    mean = require_finite("mean", require_components("mean", mean, 3))
-    sigma = require_positive("sigma", require_components("sigma", sigma, 3))
+    mean, sigma = np.asarray(mean), np.asarray(sigma)
     x, y, theta = grid.poses
     errors = (x - mean[0], y - mean[1], wrap(theta - mean[2]))
     log_p = np.zeros(grid.p.shape)

@@ -18,7 +18,6 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ParameterError, require_rng
 from pfkit.filters.particle_filter import Info, step
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel
@@ -95,9 +94,6 @@ def run(
     ParameterError, ShapeError, DataError, DegenerateWeightsError
         As `step`.
     """
-    if not isinstance(log, Log):
-        raise ParameterError(f"log must be a Log, got {log!r:.60}; build one with pf.Log(t, u, z)")
-    require_rng(rng)
     T, D, batch = len(log), bel.state.shape[0], bel.log_w.shape[:-1]
     estimate, spread = np.empty((D, T, *batch)), np.empty((D, D, T, *batch))
     ess, log_evidence = np.empty((T, *batch)), np.empty((T, *batch))

@@ -24,16 +24,7 @@ from statistics import NormalDist
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_count,
-    require_finite,
-    require_number,
-    require_positive,
-    require_rng,
-    whole_cells,
-)
+from pfkit.errors import ParameterError, require_array, require_count, require_number, whole_cells
 from pfkit.filters.particle_filter import Info, predict, take, update
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel, how_many
@@ -72,13 +63,9 @@ def kld_bound(
     -----
     Source: Probabilistic Robotics, Table 8.4; D. Fox, IJRR 22 (2003).
     """
-    k = require_finite("k", k)
-    if (k < 1).any() or (k != np.floor(k)).any():
-        raise ParameterError(f"k must be whole numbers >= 1, got {k}")
-    epsilon = require_number("epsilon", epsilon, above=0.0)
-    delta = require_number("delta", delta, above=0.0)
-    if delta >= 1:
-        raise ParameterError(f"delta must be in (0, 1), got {delta}")
+    k = require_array("k", k, rule="whole and >= 1")
+    epsilon = require_number("epsilon", epsilon, "> 0")
+    delta = require_number("delta", delta, "in (0, 1)")
     quantile = NormalDist().inv_cdf(1 - delta)
     more = np.maximum(k - 1, 1)
     spread = 2 / (9 * more)
@@ -116,12 +103,8 @@ def kld_count(
     ShapeError, ParameterError
         If there is not one cell size > 0 for each component.
     """
-    state, cell = require_finite("state", state), require_positive("cell", cell)
-    if state.ndim != 2 or state.size == 0 or cell.shape != (state.shape[0],):
-        raise ShapeError(
-            f"state (D, n) needs cell (D,), got {state.shape} and {cell.shape}; "
-            "KLD-sampling is for one filter, not for a batch"
-        )
+    state = require_array("the state of one filter", state, ("D", "n"))
+    cell = require_array("cell", cell, state.shape[:1], "finite and > 0")
     cells = whole_cells(state / cell[:, None])
     _, first = np.unique(cells, axis=1, return_index=True)
     met = np.zeros(state.shape[1], dtype=np.int64)
@@ -175,13 +158,9 @@ def kld_step(
     drawn in one go and the surplus is dropped; what is saved is the weighing. Without a
     measurement there is nothing to adapt to: the cloud only moves, at its present size.
     """
-    if bel.log_w.ndim != 1:
-        raise ShapeError("KLD-sampling is for one filter (D, M): in a batch all sizes must agree")
     if how_many(z) == 0:
         moved, ancestors = predict(bel, u, motion, rng), np.arange(bel.M, dtype=np.int64)
         return moved, Info(np.float64(0.0), moved.ess, np.False_, ancestors)
-    require_rng(rng)
-    require_count("most", most, require_count("least", least))
     drawn = rng.permutation(multinomial(bel.w, rng, most))
     moved = predict(take(bel, drawn), u, motion, rng)
     n = kld_count(moved.state, cell, epsilon, delta, least)

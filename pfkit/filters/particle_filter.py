@@ -25,15 +25,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ParameterError,
-    ShapeError,
-    as_numbers,
-    require_count,
-    require_finite,
-    require_rng,
-)
+from pfkit.errors import ParameterError, ShapeError, require_array
 from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel, how_many
 from pfkit.particles.particle_set import Particles, normalise
@@ -88,14 +80,8 @@ def predict(
     -----
     Source: Probabilistic Robotics, Table 4.3, line 4.
     """
-    require_rng(rng)
-    state = motion.sample(bel.state, as_numbers("u", u), rng)
-    if np.shape(state) != bel.state.shape:
-        raise ShapeError(
-            f"the motion model must return states of shape {bel.state.shape}, got "
-            f"{np.shape(state)}; one column per particle"
-        )
-    return Particles.trusted(require_finite("the moved state", state), bel.log_w)
+    moved = motion.sample(bel.state, np.asarray(u), rng)
+    return Particles.trusted(require_array("the moved state", moved, bel.state.shape), bel.log_w)
 
 
 def update(
@@ -132,12 +118,10 @@ def update(
     """
     if how_many(z) == 0:
         return bel, np.zeros(bel.log_w.shape[:-1])[()]
-    log_likelihood = sensor.log_likelihood(as_numbers("z", z, DataError), bel.state)
-    if np.shape(log_likelihood) != bel.log_w.shape:
-        raise ShapeError(
-            f"the sensor must return one log-likelihood per particle, shape {bel.log_w.shape}, "
-            f"got {np.shape(log_likelihood)}; sum over the measurements inside the sensor"
-        )
+    log_p = sensor.log_likelihood(np.asarray(z), bel.state)
+    log_likelihood = require_array(
+        "the log-likelihood of each particle", log_p, bel.log_w.shape, rule=None
+    )
     log_w, log_evidence = normalise(bel.log_w + log_likelihood)
     return Particles.trusted(bel.state, log_w), log_evidence
 
@@ -212,7 +196,7 @@ def resample(
     -----
     Source: Probabilistic Robotics, Table 4.3, lines 8 to 11.
     """
-    n = bel.M if n is None else require_count("n", n)
+    n = bel.M if n is None else n
     if where is True:
         return take(bel, _draw(scheme, bel.w, rng, n))
     rows = np.broadcast_to(np.asarray(where, dtype=bool), bel.log_w.shape[:-1])
@@ -240,9 +224,6 @@ def _resampled(
 
 def _draw(scheme: Resampler, w: Array, rng: np.random.Generator, n: int) -> NDArray[np.int64]:
     """Ancestors from a resampling scheme, which may be a student's own."""
-    require_rng(rng)
-    if not callable(scheme):
-        raise ParameterError(f"scheme must be a function, got {scheme!r:.60}; e.g. pf.systematic")
     ancestors = scheme(w, rng, n)
     if np.shape(ancestors) != (*w.shape[:-1], n):
         raise ShapeError(

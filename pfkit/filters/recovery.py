@@ -29,17 +29,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ParameterError,
-    Shape,
-    ShapeError,
-    require_components,
-    require_count,
-    require_finite,
-    require_rng,
-    require_shape,
-)
+from pfkit.densities import draw_normal
+from pfkit.errors import DataError, ParameterError, Shape, require_array, require_count
 from pfkit.filters.particle_filter import Info, step
 from pfkit.geometry import wrap
 from pfkit.models.landmark_sensors import RangeBearing
@@ -86,15 +77,11 @@ class Memory(NamedTuple):
         ParameterError
             If the rates are not in that order, or K is not a whole number >= 1.
         """
-        slow, fast = (
-            require_finite("alpha_slow", alpha_slow),
-            require_finite("alpha_fast", alpha_fast),
-        )
-        if not 0 < slow < fast < 1:
+        if not 0 < alpha_slow < alpha_fast < 1:
             raise ParameterError(
                 f"rates must obey 0 < alpha_slow < alpha_fast < 1, got {alpha_slow}, {alpha_fast}"
             )
-        log_mean = require_finite("log_evidence", log_evidence) / require_count("K", K)
+        log_mean = require_array("log_evidence", log_evidence) / require_count("K", K)
         log_slow, log_fast = (
             np.logaddexp(math.log1p(-alpha) + np.asarray(past), math.log(alpha) + log_mean)
             for alpha, past in ((alpha_slow, self.log_slow), (alpha_fast, self.log_fast))
@@ -136,18 +123,12 @@ def inject(
         If the share is not in [0, 1], or not one number or one per filter, or draw does not
         return as many states as there are particles.
     """
-    require_rng(rng)
-    share = require_finite("share", share)
-    if share.shape not in ((), bel.log_w.shape[:-1]):
-        raise ShapeError(f"share must be one number or one per filter, got shape {share.shape}")
-    if not ((share >= 0) & (share <= 1)).all():
-        raise ParameterError(f"share must be in [0, 1], got {share}")
+    filters = bel.log_w.shape[:-1] if np.ndim(share) else ()
+    share = require_array("share", share, filters, "in [0, 1]")
     new = rng.random(bel.log_w.shape) < share[..., None]
     if not new.any():
         return bel, new
-    fresh = require_finite("drawn states", draw(bel.log_w.shape, rng))
-    if fresh.shape != bel.state.shape:
-        raise ShapeError(f"draw must return states {bel.state.shape}, got {fresh.shape}")
+    fresh = require_array("drawn states", draw(bel.log_w.shape, rng), bel.state.shape)
     return Particles(np.where(new, fresh, bel.state), bel.log_w), new
 
 
@@ -180,20 +161,13 @@ def poses_seeing(z: ArrayLike, sensor: RangeBearing, M: Shape, rng: np.random.Ge
     -----
     Source: Probabilistic Robotics, Table 6.5. It knows no walls: a pose may lie in one.
     """
-    z = require_components("z", z, 3, DataError)
+    z = require_array("z", z, (3, "K", ...), error=DataError)
     while hasattr(sensor, "sensor"):  # an honest measurement is what the wrapped sensor makes
         sensor = sensor.sensor
-    if not isinstance(sensor, RangeBearing) or z.ndim < 2 or z.shape[1] == 0:
-        raise ParameterError(
-            f"a ring needs a RangeBearing sensor and z (3, K), K >= 1, got {sensor!r:.40} and z of "
-            f"shape {z.shape}; draw over the map's free space instead"
-        )
-    require_rng(rng)
-    shape = require_shape("M", M)
     r, phi, s = z[:, rng.integers(z.shape[1])]
-    r = np.abs(r + sensor.sigma_r * rng.standard_normal(shape))
-    phi = phi - sensor.bias_phi + sensor.sigma_phi * rng.standard_normal(shape)
-    gamma = 2 * np.pi * rng.random(shape)
+    r = np.abs(r + sensor.sigma_r * draw_normal(M, rng))
+    phi = phi - sensor.bias_phi + sensor.sigma_phi * draw_normal(M, rng)
+    gamma = 2 * np.pi * rng.random(M)
     mx, my = sensor.world.locate(s)
     return np.stack((mx + r * np.cos(gamma), my + r * np.sin(gamma), wrap(gamma - np.pi - phi)))
 

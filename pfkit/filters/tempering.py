@@ -27,18 +27,11 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ShapeError,
-    as_numbers,
-    require_finite,
-    require_fraction,
-    require_non_negative_number,
-    require_rng,
-)
+from pfkit.densities import draw_normal
+from pfkit.errors import require_array
 from pfkit.filters.particle_filter import take
 from pfkit.geometry import wrap
-from pfkit.models.sensors import SensorModel
+from pfkit.models.sensors import SensorModel, how_many
 from pfkit.particles.estimators import covariance
 from pfkit.particles.particle_set import Particles, ess, normalise
 from pfkit.particles.resampling import Resampler, systematic
@@ -85,14 +78,12 @@ def tempered_update(
         If an argument is not what it should be, or the measurement is impossible for all
         particles.
     """
-    keep = _require_shares(keep, bel.log_w.shape[:-1])
-    require_non_negative_number("kernel", kernel)
-    stages = np.zeros(bel.log_w.shape[:-1], dtype=np.int64)
-    z = None if z is None else as_numbers("z", z, DataError)
-    if z is None or (z.ndim > 1 and z.shape[1] == 0):
+    filters = bel.log_w.shape[:-1]
+    keep = require_array("keep", keep, filters if np.ndim(keep) else (), "in [0, 1]")
+    stages = np.zeros(filters, dtype=np.int64)
+    if how_many(z) == 0:
         return bel, stages
-    require_rng(rng)
-    left = np.ones(bel.log_w.shape[:-1])
+    z, left = np.asarray(z), np.ones(filters)
     while True:
         log_p = sensor.log_likelihood(z, bel.state)
         step = _largest_step(bel.log_w, log_p, keep * bel.M, left)
@@ -102,16 +93,6 @@ def tempered_update(
         if not (left > 0).any():
             return bel, stages
         bel = _spread_out(bel, left > 0, kernel, scheme, rng)
-
-
-def _require_shares(keep: ArrayLike, filters: tuple[int, ...]) -> Array:
-    """`keep` as an array of one share, or of one for each filter."""
-    shares = require_finite("keep", keep)
-    if shares.ndim and shares.shape != filters:
-        raise ShapeError(f"keep must be one number or have shape {filters}, got {shares.shape}")
-    for share in shares.flat:
-        require_fraction("keep", share)
-    return shares
 
 
 def _largest_step(log_w: Array, log_p: Array, wanted: Array, left: Array) -> Array:
@@ -132,7 +113,7 @@ def _spread_out(
     values, vectors = np.linalg.eigh(np.moveaxis(covariance(bel), (0, 1), (-2, -1)))
     root = vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]
     moved = take(bel, scheme(bel.w, rng))
-    noise = kernel * np.einsum("...ij,j...m->i...m", root, rng.standard_normal(bel.state.shape))
+    noise = kernel * np.einsum("...ij,j...m->i...m", root, draw_normal(bel.state.shape, rng))
     state = moved.state + noise
     state[2] = wrap(state[2])
     keep = where[..., None]

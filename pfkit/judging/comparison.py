@@ -24,14 +24,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_count,
-    require_finite,
-    require_number,
-    require_rng,
-)
+from pfkit.errors import ShapeError, require_array, require_count, require_number
 
 Array = NDArray[np.float64]
 
@@ -69,9 +62,7 @@ def root_mean_square(x: ArrayLike, axis: int = -1) -> Array:
     ParameterError, ShapeError
         If a number is not finite, or there is none.
     """
-    x = require_finite("x", x)
-    if x.size == 0 or x.ndim == 0:
-        raise ShapeError(f"x must be (..., n) with n >= 1, got {x.shape}")
+    x = require_array("x", x, (..., "n"))
     return np.sqrt(np.mean(x * x, axis=axis))
 
 
@@ -112,10 +103,9 @@ def bootstrap_interval(
     Source: B. Efron and R. Tibshirani, An Introduction to the Bootstrap (1993). With fewer
     than about 15 runs the interval is too short.
     """
-    require_rng(rng)
-    x = _runs(x, 2)
-    require_level(level)
-    again = x[rng.integers(0, x.size, (require_count("draws", draws), x.size), dtype=np.int64)]
+    x = _runs(x)
+    require_number("level", level, "in (0, 1)")
+    again = x[rng.integers(0, x.size, (draws, x.size), dtype=np.int64)]
     low, high = np.quantile(statistic(again, axis=-1), (0.5 - level / 2, 0.5 + level / 2))
     return Interval(float(statistic(x, axis=-1)), float(low), float(high))
 
@@ -144,11 +134,10 @@ def wilson_interval(successes: int, n: int, level: float = 0.95) -> Interval:
     -----
     Source: E. B. Wilson, JASA 22 (1927).
     """
-    n, successes = require_count("n", n), require_count("successes", successes, 0)
-    if successes > n:
-        raise ParameterError(f"{successes} successes in {n} runs; check the count")
-    require_level(level)
-    p, z = successes / n, NormalDist().inv_cdf(0.5 + level / 2)
+    require_number("level", level, "in (0, 1)")
+    share = require_count("successes", successes, 0) / require_count("n", n)
+    p = require_number("the share of successes", share, "in [0, 1]")
+    z = NormalDist().inv_cdf(0.5 + level / 2)
     centre, scale = p + z * z / (2 * n), 1 + z * z / n
     half = z * math.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
     return Interval(p, max(0.0, (centre - half) / scale), min(1.0, (centre + half) / scale))
@@ -204,12 +193,9 @@ def paired(
     ParameterError, ShapeError
         If the two lists of scores differ in length, or a score is not finite.
     """
-    require_rng(rng)
-    a, b = _runs(a, 2), _runs(b, 2)
-    if a.shape != b.shape:
-        raise ShapeError(f"paired scores need the same seeds: {a.size} of A, {b.size} of B")
+    a, b = _runs(a), _runs(b)
     d = a - b
-    signs = rng.integers(0, 2, (require_count("draws", draws), d.size), dtype=np.int64) * 2 - 1
+    signs = rng.integers(0, 2, (draws, d.size), dtype=np.int64) * 2 - 1
     # rounding must not make a sum differ from itself with another order of signs
     extreme = np.abs(signs @ d) >= abs(d.sum()) * (1 - 1e-12)
     p = (1 + np.count_nonzero(extreme)) / (1 + draws)
@@ -241,23 +227,15 @@ def compare(
     ParameterError
         If a run is not a function, or there are fewer than two seeds.
     """
-    seed = require_count("seed", seed, 0)
-    streams = np.random.SeedSequence(seed).spawn(require_count("seeds", seeds, 2) + 1)
+    streams = np.random.SeedSequence(seed).spawn(seeds + 1)
     a, b = (
-        [require_number("a score", run(np.random.default_rng(stream))) for stream in streams[1:]]
-        for run in (run_a, run_b)
+        [run(np.random.default_rng(stream)) for stream in streams[1:]] for run in (run_a, run_b)
     )
     return paired(a, b, np.random.default_rng(streams[0]))
 
 
-def _runs(x: ArrayLike, least: int) -> Array:
-    x = require_finite("scores", x)
-    if x.ndim != 1 or x.size < least:
-        raise ShapeError(f"scores must be one per run, (n,) with n >= {least}, got {x.shape}")
+def _runs(x: ArrayLike) -> Array:
+    x = require_array("scores", x, ("n",))
+    if x.size < 2:
+        raise ShapeError(f"scores must be one per run, of two runs at least, got {x.shape}")
     return x
-
-
-def require_level(level: float) -> None:
-    """Raise `ParameterError` unless a level of confidence lies between 0 and 1."""
-    if not 0 < require_number("level", level) < 1:
-        raise ParameterError(f"level must be in (0, 1), got {level}; 0.95 is usual")

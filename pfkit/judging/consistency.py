@@ -22,13 +22,8 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.densities import chi2_quantile
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_count,
-    require_finite,
-)
-from pfkit.judging.comparison import Interval, require_level, wilson_interval
+from pfkit.errors import ParameterError, require_array, require_number
+from pfkit.judging.comparison import Interval, wilson_interval
 
 Array = NDArray[np.float64]
 
@@ -55,20 +50,13 @@ def nees(error: ArrayLike, Sigma: ArrayLike) -> Array:
     Source: Y. Bar-Shalom, X. R. Li, T. Kirubarajan, Estimation with Applications to Tracking
     and Navigation (2001), section 5.4.
     """
-    error, Sigma = require_finite("error", error), require_finite("Sigma", Sigma)
-    if error.ndim == 0 or Sigma.shape != (len(error), *error.shape):
-        raise ShapeError(f"error (D, ...) needs Sigma (D, D, ...): {error.shape}, {Sigma.shape}")
+    error = require_array("error", error, ("D", ...))
+    Sigma = require_array("Sigma", Sigma, (len(error), *error.shape))
     columns = np.moveaxis(error, 0, -1)[..., None]
     matrices = np.moveaxis(Sigma, (0, 1), (-2, -1))
     if not np.allclose(matrices, np.swapaxes(matrices, -2, -1)):
         raise ParameterError(f"Sigma must be symmetric, got {Sigma!r:.60}; is it a covariance?")
-    try:
-        root = np.linalg.cholesky(matrices)
-    except np.linalg.LinAlgError:
-        raise ParameterError(
-            "Sigma must be positive definite, but a cloud has collapsed; skip such steps or "
-            "add process noise"
-        ) from None
+    root = np.linalg.cholesky(matrices)
     return np.sum(np.linalg.solve(root, columns)[..., 0] ** 2, axis=-1)
 
 
@@ -92,8 +80,7 @@ def nees_band(D: int, runs: int, level: float = 0.95) -> tuple[float, float]:
     ParameterError
         If D or runs is not a whole number of at least 1, or the level is not in (0, 1).
     """
-    D, runs = require_count("D", D), require_count("runs", runs)
-    require_level(level)
+    require_number("level", level, "in (0, 1)")
     low, high = (chi2_quantile(0.5 + s * level / 2, D * runs) / runs for s in (-1, 1))
     return low, high
 
@@ -120,8 +107,5 @@ def coverage(error: ArrayLike, Sigma: ArrayLike, level: float = 0.9) -> Interval
         1).
     """
     distance = nees(error, Sigma)
-    if distance.ndim != 1:
-        raise ShapeError(f"coverage counts runs: error must be (D, n), got {np.shape(error)}")
-    require_level(level)
     inside = int(np.sum(distance <= chi2_quantile(level, len(np.asarray(error)))))
     return wilson_interval(inside, distance.size)

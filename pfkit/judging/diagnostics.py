@@ -19,18 +19,12 @@ whether the filter *knows* how wrong it is, `genealogy` who descends from whom.
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ParameterError,
-    ShapeError,
-    as_numbers,
-    require_components,
-    require_finite,
-    require_number,
-)
+from pfkit.errors import DataError, require_array, require_number
 from pfkit.filters.history import History
 from pfkit.geometry import wrap
 from pfkit.judging.table import Table, tabulate
@@ -67,19 +61,11 @@ def pose_error(estimate: ArrayLike, truth: ArrayLike) -> Array:
     ShapeError, DataError
         If the shapes do not belong together, the estimate is not finite or the truth infinite.
     """
-    estimate = require_finite("estimate", estimate, DataError)
-    truth = as_numbers("truth", truth, DataError)
-    require_finite("truth", truth[~np.isnan(truth)], DataError)
-    if estimate.ndim == 0 or estimate.shape[0] < 2:
-        raise ShapeError(
-            f"estimate must have its components first, shape (D, ...), got {estimate.shape}"
-        )
-    if truth.ndim == 0:
-        raise ShapeError(f"truth must be (D, ...), got {truth!r:.40}; log.truth may be None")
+    estimate = require_array("estimate", estimate, ("D", ...), error=DataError)
+    truth = require_array("truth", truth, ("D", ...), None, DataError)
     if truth.ndim == estimate.ndim + 1 and truth.shape[-1] == 1:
         truth = truth[..., 0]  # the truths of a batched log are (D, T, B, 1)
-    if truth.shape != estimate.shape[: truth.ndim]:
-        raise ShapeError(f"truth {truth.shape} must match the estimate {estimate.shape}")
+    truth = require_array("truth", truth, estimate.shape[: truth.ndim], None)
     error = estimate - truth.reshape(truth.shape + (1,) * (estimate.ndim - truth.ndim))
     if error.shape[0] >= 3:
         known = ~np.isnan(error[2])
@@ -142,16 +128,12 @@ def heading_rmse(estimate: ArrayLike, truth: ArrayLike) -> Array | np.float64:
     ShapeError, DataError
         As `rmse`.
     """
-    return _root_mean_square(pose_error(require_components("estimate", estimate, 3), truth)[2])
+    return _root_mean_square(pose_error(estimate, truth)[2])
 
 
 def _root_mean_square(error: Array) -> Array | np.float64:
-    if error.ndim == 0 or error.shape[0] == 0:
-        raise ShapeError(f"need (D, T) with at least one step T, got errors of {error.shape}")
     known = ~np.isnan(error)
     steps = known.sum(axis=0)
-    if not np.all(steps):
-        raise DataError("the truth is NaN at every step of a run: there is nothing to score")
     return np.sqrt(np.sum(np.where(known, error, 0.0) ** 2, axis=0) / steps)
 
 
@@ -173,10 +155,9 @@ def settling_time(t: ArrayLike, error: ArrayLike, limit: float) -> Array | np.fl
     ParameterError, ShapeError
         If the shapes do not match, a number is not finite, or the limit is not positive.
     """
-    t, error = require_finite("t", t), require_finite("error", error)
-    require_number("limit", limit, above=0.0)
-    if t.ndim != 1 or t.size == 0 or error.shape[:1] != t.shape:
-        raise ShapeError(f"error needs one row per time, (T,) or (T, B): {error.shape}, {t.shape}")
+    t = require_array("t", t, ("T",))
+    error = require_array("error", error, (t.size, ...))
+    require_number("limit", limit, "> 0")
     late = np.cumprod((error < limit)[::-1], axis=0).sum(axis=0)  # steps of the good ending
     return np.append(t, np.inf)[len(t) - late]
 
@@ -207,9 +188,7 @@ def dead_reckoning(
     """
     if start is None:
         start = log.start
-    if start is None:
-        raise ParameterError("dead reckoning needs a start pose (3,), got None; pass start=")
-    pose = require_finite("start", start)
+    pose: Any = start
     if motion is None:
         motion = MOTIONS["speeds" if log.rig is None else log.rig.odometry]
     path = []
@@ -237,8 +216,6 @@ def trace(history: History) -> Table:
     ShapeError
         If the history holds a batch.
     """
-    if history.ess.ndim != 1:
-        raise ShapeError(f"trace needs one run, got a batch of {history.ess.shape[1]}; pick one")
     T = len(history.t)
     columns = {
         "step": np.arange(T, dtype=np.int64),

@@ -16,8 +16,8 @@ from functools import cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_count, require_finite
-from pfkit.judging.comparison import Interval, require_level
+from pfkit.errors import require_array, require_count, require_number
+from pfkit.judging.comparison import Interval
 
 Array = NDArray[np.float64]
 
@@ -53,7 +53,7 @@ def t_quantile(level: float, freedom: int) -> float:
     -----
     Source: Abramowitz and Stegun, Handbook of Mathematical Functions (1964), 26.7.3 and 26.7.4.
     """
-    require_level(level)
+    require_number("level", level, "in (0, 1)")
     odd = require_count("freedom", freedom) % 2
     k = np.arange(1, (freedom - odd) // 2)
     c = np.cumprod(np.append(1.0, 2 * k / (2 * k + 1) if odd else (2 * k - 1) / (2 * k)))
@@ -120,12 +120,8 @@ def cluster_interval(x: ArrayLike, clusters: ArrayLike, level: float = 0.95) -> 
     With one run a cluster it is `t_interval`. Source: K.-Y. Liang and S. Zeger, Biometrika 73
     (1986), with the usual correction for few clusters.
     """
-    x, (names, of) = require_finite("x", x), np.unique(clusters, return_inverse=True)
-    if x.ndim != 1 or of.shape != x.shape or names.size < 2:
-        raise ShapeError(
-            f"x and clusters must both be (n,) and name two clusters or more, got {x.shape}, "
-            f"{of.shape} and {names.size}; runs of one world cannot say how worlds differ"
-        )
+    names, of = np.unique(clusters, return_inverse=True)
+    x = require_array("x", x, (of.size,))
     mean, G = float(np.mean(x)), names.size
     sums = np.bincount(of, x - mean) / x.size
     half = t_quantile(level, G - 1) * math.sqrt(G / (G - 1) * float(np.sum(sums**2)))

@@ -31,7 +31,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, ParameterError, require_components, require_count
+from pfkit.errors import DataError, ParameterError, require_array
 from pfkit.filters.particle_filter import predict, resample, update
 from pfkit.filters.recovery import Memory, inject
 from pfkit.filters.tempering import tempered_update
@@ -155,8 +155,8 @@ def localise(
     """
     settings = settings or settings_for(log)
     everywhere = isinstance(start, str) and start == "global"
-    M = settings.M[everywhere] if M is None else require_count("particles M", M)
-    shape = (require_count("batch", batch), M)
+    M = settings.M[everywhere] if M is None else M
+    shape = (batch, M)
     bel = (
         uniform_prior(shape, log.world, rng)
         if everywhere
@@ -181,7 +181,7 @@ def localise(
 def _start(log: Log, start: str | ArrayLike) -> Array:
     """The pose that a start which is not global means."""
     if not isinstance(start, str):
-        return require_components("start", start, 3)
+        return require_array("start", start, (3,))
     if start != "known":
         raise ParameterError(f"start must be 'known', 'global' or a pose (3,), got {start!r}")
     if log.start is None:

@@ -26,7 +26,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, ParameterError, require_positive
+from pfkit.errors import DataError, ParameterError, require_array
 from pfkit.logs.calibration import USUAL_DRIFT, Calibration, calibrate
 from pfkit.logs.odometry import Drift
 from pfkit.models.association import MaximumLikelihood
@@ -147,9 +147,7 @@ def _sigmas(log: Log, rig: Rig, fitted: Calibration, given: ArrayLike | None) ->
     measured = [own or other for own, other in zip(fitted.sigma, usual, strict=True)]
     if given is None:
         return tuple(measured)
-    own = require_positive("sigma", given)
-    if own.shape not in ((), (1,), (2,)):
-        raise ParameterError(f"sigma must be one number or two, got shape {own.shape}")
+    own = require_array("sigma", given, (2,) if np.size(given) > 1 else (...,), "finite and > 0")
     if rig.sensor == "bearing" and own.size == 1:
         return measured[0], float(own.reshape(-1)[0])
     return (*own.reshape(-1).tolist(), measured[1])[:2]

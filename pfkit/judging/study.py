@@ -47,7 +47,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_count
+from pfkit.errors import ParameterError, ShapeError
 from pfkit.judging.table import Table, from_csv, summarise, tabulate, to_csv
 
 __all__ = ["from_csv", "grid", "one_by_one", "run", "summarise", "to_csv"]
@@ -85,8 +85,6 @@ class one_by_one:
     def __call__(self, rng: np.random.Generator, B: int, **setting: Any) -> dict[str, list[float]]:
         """Perform B runs one after the other."""
         rows = [self.function(stream, **setting) for stream in rng.spawn(B)]
-        if not all(isinstance(row, Mapping) for row in rows):
-            raise ParameterError(f"a run must return {{name: number}}, got {rows[0]!r:.60}")
         return {name: [row[name] for row in rows] for name in rows[0]}
 
 
@@ -128,8 +126,7 @@ def run(
     ParameterError, ShapeError
         If there is no setting, keys differ, or a result has not one number per run.
     """
-    settings, seed = _check_settings(settings), require_count("seed", seed, 0)
-    runs, block = require_count("runs", runs), require_count("block", block)
+    settings = _check_settings(settings)
     first = range(0, runs, block)
     tasks = [
         (experiment, dict(setting), seed, i, min(block, runs - start))
@@ -154,8 +151,6 @@ def _one_block(
     rng = np.random.default_rng(np.random.SeedSequence(seed, spawn_key=(i,)))
     try:
         returned = experiment(rng, B, **setting)
-        if not isinstance(returned, Mapping) or not returned:
-            raise ParameterError(f"an experiment must return {{name: (B,)}}, got {returned!r:.60}")
         result = {name: np.asarray(column) for name, column in returned.items()}
     except Exception as error:
         error.add_note(f"in block {i} of setting {dict(setting)}")
@@ -189,9 +184,7 @@ def _submitted(tasks: list[tuple], executor: Executor, bar: _Bar) -> list[dict[s
 
 
 def _check_settings(settings: Iterable[Setting]) -> list[Setting]:
-    settings = list(settings) if isinstance(settings, Iterable) else []
-    if not settings or not all(isinstance(setting, Mapping) for setting in settings):
-        raise ParameterError("a study needs a list of settings, e.g. of grid(); pass [{}] for none")
+    settings = list(settings)
     for setting in settings:
         if list(setting) != list(settings[0]):
             raise ParameterError(

@@ -21,12 +21,13 @@ from __future__ import annotations
 import csv
 import os
 from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, ParameterError, ShapeError, as_path
+from pfkit.errors import DataError, ParameterError, ShapeError
 from pfkit.judging.comparison import bootstrap_interval
 
 Table = NDArray[np.void]
@@ -87,11 +88,7 @@ def summarise(
     ParameterError
         If the table has no such column, or the level is not in (0, 1).
     """
-    names = _names(table)
     by = [by] if isinstance(by, str) or not isinstance(by, Sequence) else list(by)
-    unknown = [name for name in (*by, value) if str(name) not in names]
-    if unknown:
-        raise ParameterError(f"no column {unknown[0]!r}; the table has {names}")
     if taken := {"runs", "value", "low", "high"} & set(by):
         raise ParameterError(f"the summary has a column {min(taken)!r} of its own; rename yours")
     groups: dict[tuple, list[int]] = {}
@@ -111,10 +108,9 @@ def summarise(
 
 def to_csv(table: Table, path: str | os.PathLike[str]) -> None:
     """Write a table as CSV with a header; numbers keep all their digits."""
-    names = _names(table)
-    with open(as_path("path", path), "w", newline="", encoding="utf-8") as file:
+    with Path(path).open("w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(names)
+        writer.writerow(table.dtype.names)  # type: ignore[arg-type]
         writer.writerows(table.tolist())
 
 
@@ -127,11 +123,8 @@ def from_csv(path: str | os.PathLike[str]) -> Table:
         If the file cannot be read, is empty, or a row has another number of fields than the
         header.
     """
-    try:
-        with open(as_path("path", path), newline="", encoding="utf-8") as file:
-            rows = list(csv.reader(file))
-    except OSError as problem:
-        raise DataError(f"{path}: cannot be read ({problem.strerror}); check the path") from None
+    with Path(path).open(newline="", encoding="utf-8") as file:
+        rows = list(csv.reader(file))
     if len(rows) < 2:
         raise DataError(f"{path} holds no rows; was it written by study.to_csv?")
     for number, row in enumerate(rows[1:], start=2):
@@ -139,14 +132,6 @@ def from_csv(path: str | os.PathLike[str]) -> Table:
             raise DataError(f"{path}, line {number}: {len(row)} fields, header has {len(rows[0])}")
     cells = zip(*rows[1:], strict=True)
     return tabulate({name: _parse(column) for name, column in zip(rows[0], cells, strict=True)})
-
-
-def _names(table: Table) -> tuple[str, ...]:
-    """The columns of a structured array."""
-    names = getattr(getattr(table, "dtype", None), "names", None)
-    if not names:
-        raise ParameterError(f"a table must be a structured array, got {table!r:.60}; see tabulate")
-    return names
 
 
 def _parse(column: Sequence[str]) -> NDArray[Any]:

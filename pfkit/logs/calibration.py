@@ -29,7 +29,7 @@ from itertools import combinations
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import DataError, require_finite
+from pfkit.errors import DataError, require_array
 from pfkit.geometry import between, wrap
 from pfkit.logs.odometry import Drift, Preintegrated
 from pfkit.worlds.log import Log
@@ -77,7 +77,7 @@ class Calibration:
 
     def __post_init__(self) -> None:
         for name in ("speed", "turn", "delay", "bearing_bias", "range_bias"):
-            require_finite(name, getattr(self, name))
+            require_array(name, getattr(self, name))
 
     def apply(self, log: Log) -> Log:
         """The log as a well-calibrated odometer would have written it."""
@@ -185,6 +185,8 @@ def calibrate(log: Log) -> Calibration:
         If `log` is not a log, or has no truth to compare with.
     """
     log.first_measured()
+    if log.truth is None:
+        raise DataError("calibration compares with the truth, and this log has none")
     rig = log.rig or Rig("range-bearing")
     if rig.sensor == "range":
         found = Calibration(range_bias=fit_range_bias(log))
@@ -291,13 +293,11 @@ def _corrected(log: Log, speed: float, turn: float, delay: float) -> Array:
 
 def _windows(log: Log) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Pairs of steps one window apart, at both of which the truth is known."""
-    if log.truth is None:
-        raise DataError("calibration compares with the truth, and this log has none")
     t0 = np.arange(log.t[0], log.t[-1] - WINDOW, STRIDE)
     i, j = np.searchsorted(log.t, t0), np.searchsorted(log.t, t0 + WINDOW)
     good = np.isfinite(log.truth[:2, i] + log.truth[:2, j]).all(axis=0)
     i, j = i[good], j[good]
-    way = np.hypot(*(log.truth[:2, j] - log.truth[:2, i])) if i.size else np.zeros(0)
+    way = np.hypot(*(log.truth[:2, j] - log.truth[:2, i])) if i.size else np.zeros(0)  # type: ignore[index]
     if way.sum() * STRIDE / WINDOW < 1.0:
         raise DataError(
             f"the robot drives less than a metre in the {log.t[-1] - log.t[0]:.0f} s to calibrate "
@@ -308,11 +308,9 @@ def _windows(log: Log) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
 
 def _measured(log: Log) -> tuple[NDArray[np.int64], Array]:
     """All measurements of a log in one array (n, N), and the step of each (N,)."""
-    if log.truth is None:
-        raise DataError("calibration compares with the truth, and this log has none")
     counts = [zk.shape[1] for zk in log.z]
     k, z = np.repeat(np.arange(len(log)), counts), np.hstack(list(log.z))
-    known = np.isfinite(log.truth[0, k])
+    known = np.isfinite(log.truth[0, k])  # type: ignore[index]
     if not known.any():
         raise DataError("no measurement has a known true pose here; calibrate on a longer part")
     return k[known], z[:, known]

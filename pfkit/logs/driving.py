@@ -23,13 +23,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_count,
-    require_finite,
-    require_rng,
-)
+from pfkit.errors import ParameterError, require_array, require_count
 from pfkit.models.motion import MotionModel
 
 Array = NDArray[np.float64]
@@ -72,22 +66,16 @@ def drive(
     ShapeError, ParameterError
         If start or u have the wrong shape, or a kidnapping has no step or no world.
     """
-    require_rng(rng)
-    pose = require_finite("start", start)
-    if pose.ndim not in (1, 3):
-        raise ShapeError(f"start must be (D,), or (D, B, 1) for a batch, got {pose.shape}")
+    pose = require_array("start", start, ("D",) if np.ndim(start) < 2 else ("D", "B", 1))
     driver, steps = _driver(u, steps)
     off = _kidnap_steps(kidnap, steps)
     controls, truth = [], []
     for k in range(steps):
         controls.append(np.asarray(driver(k, pose), dtype=float))
         moved = motion.sample(pose, controls[-1], rng)
-        if np.shape(moved) != pose.shape:
-            raise ShapeError(
-                f"the motion model turned {pose.shape} into {np.shape(moved)}; use u row by row, "
-                "v, omega, dt = u, so that it broadcasts over a batch"
-            )
-        pose = moved
+        pose = require_array(
+            "the moved pose (use u row by row: v, omega, dt = u)", moved, pose.shape
+        )
         if k in off:
             pose = _carry_off(off[k], pose.shape, world, rng)
         truth.append(pose)
@@ -98,9 +86,7 @@ def _driver(u: ArrayLike | Driver, steps: int | None) -> tuple[Driver, int]:
     """Commands and drivers alike as a function (k, pose), and the number of steps."""
     if callable(u):
         return u, require_count("steps (how long the driver drives)", steps)
-    given = require_finite("u", u)
-    if given.ndim not in (2, 4) or given.shape[1] == 0:
-        raise ShapeError(f"u must be (n, T), T >= 1, or (n, T, B, 1), got {given.shape}")
+    given = require_array("u", u, ("n", "T") if np.ndim(u) < 3 else ("n", "T", "B", 1))
     return lambda k, pose: given[:, k], given.shape[1]
 
 
@@ -116,10 +102,6 @@ def _carry_off(
 ) -> Array:
     """The pose after a kidnapping, in the shape of the pose before."""
     if goal is None:
-        if world is None:
-            raise ParameterError("kidnap to None needs a world to draw from; name a pose instead")
         return world.sample_poses(shape[1:] or (1,), rng).reshape(shape)
-    goal = require_finite("kidnap pose", goal)
-    if goal.shape != shape[:1]:
-        raise ShapeError(f"a kidnap pose must have shape {shape[:1]}, got {goal.shape}")
+    goal = require_array("kidnap pose", goal, shape[:1])
     return np.broadcast_to(goal.reshape(-1, *(1,) * (len(shape) - 1)), shape).copy()

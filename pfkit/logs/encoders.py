@@ -21,12 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ShapeError,
-    require_components,
-    require_positive_number,
-)
+from pfkit.errors import DataError, require_array, require_fields, require_number
 from pfkit.geometry import compose, wrap
 from pfkit.logs.calibration import least_squares, slopes
 
@@ -57,12 +52,11 @@ class WheelGeometry:
     L: float
 
     def __post_init__(self) -> None:
-        for name in ("r_l", "r_r", "L"):
-            require_positive_number(name, getattr(self, name))
+        require_fields(self, r_l="finite and > 0", r_r="finite and > 0", L="finite and > 0")
 
     def arcs(self, turns: ArrayLike) -> tuple[Array, Array]:
         """Distance (m) and turn (rad) of the body for turns (2, ...) of left and right wheel."""
-        left, right = require_components("turns", turns, 2)
+        left, right = require_array("turns", turns, (2, ...))
         left, right = self.r_l * left, self.r_r * right
         return (left + right) / 2, (right - left) / self.L
 
@@ -86,15 +80,13 @@ def encoder_odometry(turns: ArrayLike, wheels: WheelGeometry, start: ArrayLike =
     ShapeError, ParameterError
         If there are not two wheels, or a number is not finite.
     """
-    distance, turn = wheels.arcs(turns)
-    if turn.ndim == 0:
-        raise ShapeError("turns must be (2, T, ...), a row of both wheels each, got (2,)")
+    distance, turn = wheels.arcs(require_array("turns", turns, (2, "T", ...)))
     heading = np.cumsum(turn, axis=0)
     direction = heading - turn / 2
     chord = distance * np.sinc(turn / (2 * np.pi))
     x, y = (np.cumsum(chord * f(direction), axis=0) for f in (np.cos, np.sin))
     path = np.stack((x, y, wrap(heading)))
-    start = require_components("start", start, 3)
+    start = require_array("start", start, (3, ...))
     return compose(start.reshape(3, *(start.shape[1:] or (1,) * turn.ndim)), path)
 
 
@@ -120,7 +112,7 @@ def square_turns(
     ParameterError
         If the side is not positive.
     """
-    require_positive_number("side", side)
+    require_number("side", side, "finite and > 0")
     rim = (-1 if clockwise else 1) * np.pi / 4 * wheels.L
     once = np.array(((side, -rim), (side, rim))) / rows
     return np.tile(np.repeat(once, rows, axis=1), 4) / np.array(((wheels.r_l,), (wheels.r_r,)))
@@ -165,9 +157,7 @@ def calibrate_wheels(
     and L. Feng (IEEE Transactions on Robotics and Automation 12(6), 1996), which solves for
     them to first order.
     """
-    ends = require_components("ends", ends, 2)
-    if ends.shape != (2, len(drives)):
-        raise ShapeError(f"ends must be (2, {len(drives)}), one for each drive, got {ends.shape}")
+    ends = require_array("ends", ends, (2, len(drives)))
     r = (wheels.r_l + wheels.r_r) / 2
 
     def believed(p: Array) -> WheelGeometry:

@@ -19,16 +19,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_components,
-    require_finite,
-    require_fraction,
-    require_method,
-    require_number,
-    require_rng,
-)
+from pfkit.errors import ParameterError, ShapeError, require_array, require_fields, require_rng
 from pfkit.geometry import wrap
 from pfkit.worlds.maps import LandmarkMap
 
@@ -52,14 +43,13 @@ class FieldOfView:
     fov: float = 2 * np.pi
 
     def __post_init__(self) -> None:
-        require_method("world", self.world, "locate")
-        require_number("r_max", self.r_max, above=0.0)
-        if not 0 < require_number("fov", self.fov) <= 2 * np.pi + 1e-9:
+        require_fields(self, r_max="> 0", fov="> 0")
+        if self.fov > 2 * np.pi + 1e-9:
             raise ParameterError(f"fov must be in (0, 2 pi] radians, got {self.fov}")
 
     def __call__(self, pose: Array) -> NDArray[np.bool_]:
         """Whether each landmark is seen from poses (3, ...): (K, ...), in the map's order."""
-        x, y, theta = require_components("pose", pose, 3)
+        x, y, theta = pose
         mx, my = self.world.positions.reshape(2, -1, *(1,) * np.ndim(x))
         dx, dy = mx - x, my - y
         bearing = wrap(np.arctan2(dy, dx) - theta)
@@ -86,12 +76,11 @@ class Outliers:
     high: tuple[float, ...]
 
     def __post_init__(self) -> None:
-        require_fraction("epsilon", self.epsilon)
-        low, high = require_finite("low", self.low), require_finite("high", self.high)
-        if low.ndim != 1 or low.shape != high.shape or not (low < high).all():
-            raise ParameterError(
-                f"low and high need one number per row, low < high, got {low} and {high}"
-            )
+        require_fields(self, epsilon="in [0, 1]")
+        low = require_array("low", self.low, ("n",))
+        high = require_array("high", self.high, low.shape)
+        if not (low < high).all():
+            raise ParameterError(f"low must be below high in each row, got {low} and {high}")
 
     @property
     def density(self) -> float:
@@ -101,7 +90,7 @@ class Outliers:
     def spoil(self, z: Array, rng: np.random.Generator) -> tuple[Array, NDArray[np.bool_]]:
         """Replace some columns of z (n, K, ...); also return their labels (K, ...)."""
         require_rng(rng)
-        z, n = require_finite("z", z), len(self.low)
+        z, n = require_array("z", z), len(self.low)
         if z.ndim < 2 or n > z.shape[0]:
             raise ShapeError(
                 f"z must have {n} rows or more, (n, K), got {z.shape}; shorten low, high"

@@ -26,7 +26,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, ShapeError, as_path, require_count
+from pfkit.errors import DataError, require_count
 from pfkit.logs.datasets.text import read_table
 from pfkit.worlds.log import Log
 from pfkit.worlds.maps import LandmarkMap
@@ -51,10 +51,8 @@ def save_log(log: Log, folder: str | Path, digits: int = 17) -> None:
     ShapeError
         If the log holds a batch.
     """
-    if log.u.ndim != 2:
-        raise ShapeError(f"only single drives can be saved, got u {log.u.shape}; pick one run")
     require_count("digits", digits)
-    folder = as_path("folder", folder)
+    folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     rows = [log.t[None], log.u] + ([] if log.truth is None else [log.truth])
     names = ["time", *_numbered("u", log.u), *_numbered("x", log.truth)]
@@ -89,7 +87,7 @@ def read_log(folder: str | Path) -> Log:
     DataError
         With file, line and reason, if a table is missing or damaged.
     """
-    folder = as_path("folder", folder)
+    folder = Path(folder)
     steps, source = _read(folder / "steps.txt")
     u, truth = (np.array([steps[n] for n in steps if n.startswith(c)]) for c in "ux")
     T = len(steps["time"])
@@ -191,8 +189,6 @@ def _write(path: Path, names: list[str], rows: Array, digits: int, source: str =
 
 def _read(path: Path) -> tuple[dict[str, Array], str]:
     """Columns by the names in the first line, and what the second line says."""
-    if not path.is_file():
-        raise DataError(f"{path}: no such file; a log folder needs it, save_log writes it")
     lines = path.read_text(encoding="utf-8").splitlines()
     comments = [line[2:] for line in lines if line.startswith("# ")]
     if not comments or not lines[0].startswith("# "):

@@ -30,11 +30,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import (
-    ShapeError,
-    require_components,
-    require_non_negative,
-)
+from pfkit.errors import ShapeError, require_array
 from pfkit.geometry import between, compose, wrap
 from pfkit.worlds.log import Log
 
@@ -66,8 +62,8 @@ class Drift:
     turn: tuple[float, float, float] = (0.01, 0.01, 0.0)
 
     def __post_init__(self) -> None:
-        require_components("drive", require_non_negative("drive", self.drive), 3)
-        require_components("turn", require_non_negative("turn", self.turn), 3)
+        require_array("drive", self.drive, (3,), "finite and >= 0")
+        require_array("turn", self.turn, (3,), "finite and >= 0")
 
     def variances(self, u: Array) -> tuple[Array, Array]:
         """Variances a (m^2) and q (rad^2) of steps u = (v, omega, dt), shape (3, T)."""
@@ -92,12 +88,11 @@ class ComposedMotion:
 
     def mean(self, pose: Array, u: Array) -> Array:
         """Noise-free motion: pose (3, ...), u (12,) -> pose (3, ...)."""
-        return compose(pose, require_components("u", u, 12)[:3])
+        return compose(pose, require_array("u", u, (12, ...))[:3])
 
     def sample(self, pose: Array, u: Array, rng: np.random.Generator) -> Array:
         """Each particle moves with an error of its own: (3, ...), (12,) -> (3, ...)."""
-        u = require_components("u", u, 12)
-        pose = require_components("pose", pose, 3)
+        u = require_array("u", u, (12, ...))
         L = u[3:].reshape(3, 3, *u.shape[1:])
         error = np.einsum("ij...,j...->i...", L, rng.standard_normal(pose.shape))
         column = (..., *(None,) * (pose.ndim - u.ndim))
@@ -132,7 +127,7 @@ def paces(u: Array, odometry: str = "speeds", t: Array | None = None) -> Paces:
     odometry : "speeds", "turns" or "increments"
     t : array (T,), seconds, at the ends of the steps; speeds know their own times
     """
-    first, second, third = require_components("u", u, 3)
+    first, second, third = require_array("u", u, (3, ...))
     if odometry == "speeds":
         way, turn = first * third, second * third
         return Paces(way, way * np.sinc(turn / (2 * np.pi)), turn / 2, turn, third)
@@ -290,15 +285,11 @@ def fill_in(
     ParameterError, ShapeError
         If the estimates, their covariances and their instants do not belong together.
     """
-    estimate = require_components("estimate", estimate, 3)
-    Sigma, ends = require_components("Sigma", Sigma, 3), np.asarray(ends)
-    if ends.dtype.kind not in "iu" or ends.shape != estimate.shape[1:2] or np.any(ends < 0):
-        raise ShapeError(
-            f"ends must be whole numbers, one per estimate {estimate.shape}, got "
-            f"{ends.dtype} of shape {ends.shape}"
-        )
-    if Sigma.shape != (3, *estimate.shape):
-        raise ShapeError(f"Sigma must be {(3, *estimate.shape)}, got {Sigma.shape}")
+    ends = np.asarray(ends)
+    if ends.dtype.kind not in "iu" or ends.ndim != 1 or np.any(ends < 0):
+        raise ShapeError(f"ends must be whole numbers (T,), got {ends.dtype} of shape {ends.shape}")
+    estimate = require_array("estimate", estimate, (3, ends.size, ...))
+    Sigma = require_array("Sigma", Sigma, (3, *estimate.shape))
     now = np.arange(1, len(log) + 1)
     latest = np.searchsorted(ends, now, side="right") - 1
     motion, grown = Preintegrated.of(log, drift).between(ends[latest], now)

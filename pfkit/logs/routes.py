@@ -20,13 +20,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_components,
-    require_finite,
-    require_positive_number,
-)
+from pfkit.errors import ParameterError, require_array, require_fields, require_number
 from pfkit.geometry import wrap
 
 Array = NDArray[np.float64]
@@ -49,15 +43,10 @@ def commands(segments: Iterable[tuple[float, float, float]], dt: float) -> Array
     ParameterError, ShapeError
         If a number is not finite, a duration is negative, or a command has not three numbers.
     """
-    dt = require_positive_number("dt", dt)
-    if not isinstance(segments, Iterable):
-        raise ShapeError(f"segments must be a list of (v, omega, seconds), got {segments!r:.40}")
+    dt = require_number("dt", dt, "finite and > 0")
     columns: list[Array] = []
     for segment in segments:
-        values = require_finite("a command (v, omega, seconds)", segment)
-        if values.shape != (3,):
-            raise ShapeError(f"a command must be (v, omega, seconds), got {segment!r}")
-        v, omega, seconds = values
+        v, omega, seconds = require_array("a command (v, omega, seconds)", segment, (3,))
         if seconds < 0:
             raise ParameterError(f"a command must last >= 0 s, got {seconds}; swap its end points")
         whole = int(seconds / dt + 1e-9)
@@ -106,14 +95,17 @@ class PurePursuit:
     _s: Array = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        points = require_finite("points", require_components("points", self.points, 2))
-        for name in ("v", "dt", "lookahead", "omega_max"):
-            require_positive_number(name, getattr(self, name))
-        if points.ndim != 2 or points.shape[1] < 2:
-            raise ShapeError(f"points must be (2, P) with P >= 2, got {points.shape}")
+        points = require_array("points", self.points, (2, "P"))
+        require_fields(
+            self,
+            v="finite and > 0",
+            dt="finite and > 0",
+            lookahead="finite and > 0",
+            omega_max="finite and > 0",
+        )
         knots = np.append(points, points[:, :1], axis=1) if self.closed else points
         lengths = np.hypot(*np.diff(knots, axis=1))
-        if not (lengths > 0).all():
+        if lengths.size == 0 or not (lengths > 0).all():
             raise ParameterError(f"way-points must differ from their neighbours: {points.T}")
         object.__setattr__(self, "points", points)
         object.__setattr__(self, "_knots", knots)
@@ -121,7 +113,7 @@ class PurePursuit:
 
     def __call__(self, k: int, pose: Array) -> Array:
         """Control (3, ...) for a robot at pose (3, ...): v, omega, dt."""
-        pose = require_components("pose", pose, 3)
+        pose = require_array("pose", pose, (3, ...))
         s, length = self._progress(pose[:2]), self._s[-1]
         goal = (
             (s + self.lookahead) % length if self.closed else np.minimum(s + self.lookahead, length)

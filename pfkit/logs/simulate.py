@@ -26,14 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_count,
-    require_finite,
-    require_positive,
-    require_rng,
-)
+from pfkit.errors import ParameterError, require_array, require_count
 from pfkit.logs.driving import Driver, Kidnap, drive
 from pfkit.logs.faults import Outliers
 from pfkit.models.association import MaximumLikelihood
@@ -93,10 +86,7 @@ def sense(
     ShapeError, ParameterError
         If truth has the wrong shape, or a batch with `sight` has no `Masked` sensor.
     """
-    require_rng(rng)
-    truth, every = require_finite("truth", truth), require_count("every", every)
-    if truth.ndim not in (2, 4):
-        raise ShapeError(f"truth must be (D, T), or (D, T, B, 1) for a batch, got {truth.shape}")
+    truth, every = require_array("truth", truth, ("D", "T", ...)), require_count("every", every)
     if sight is not None and truth.ndim == 4 and not isinstance(sensor, Masked):
         raise ParameterError("robots of a batch see different landmarks; use Masked(sensor)")
     z, false = [], []
@@ -156,10 +146,9 @@ def simulate_log(
     ShapeError, ParameterError
         As `drive` and `sense`; also if the robots of a batch have different dt.
     """
-    require_rng(rng)
-    start = require_finite("start", start)
     if batch is not None:
-        start = _side_by_side(start, require_count("batch", batch))
+        start = require_array("start", start, ("D",))
+        start = np.repeat(start[:, None, None], require_count("batch", batch), axis=1)
     world = _world_of(sensor)
     on_the_road, at_the_sensor = rng.spawn(2)
     u, truth = drive(start, u, motion, on_the_road, steps=steps, kidnap=kidnap, world=world)
@@ -169,7 +158,7 @@ def simulate_log(
         u=u,
         z=z,
         truth=truth,
-        start=start,
+        start=start,  # type: ignore[arg-type]
         world=world,
         source=source,
         outlier=None if outliers is None else false,
@@ -192,12 +181,6 @@ def rig_of(motion: MotionModel, sensor: Any) -> Rig | None:
     if odometry is None or kind is None:
         return None
     return Rig(kind, odometry, named, mount, flipped, getattr(sensor, "r_max", math.inf))
-
-
-def _side_by_side(start: Array, B: int) -> Array:
-    if start.ndim != 1:
-        raise ShapeError(f"batch needs one start (D,), got {start.shape}; drop batch")
-    return np.repeat(start[:, None, None], B, axis=1)
 
 
 def _world_of(sensor: Any) -> Any:
@@ -224,7 +207,7 @@ def _times(u: Array, motion: MotionModel, dt: float | None) -> Array:
     T = u.shape[1]
     if dt is None and (isinstance(motion, OdometryMotion | IncrementMotion) or len(u) < 3):
         dt = 1.0
-    durations = u[2] if dt is None else np.full(T, require_positive("dt", dt))
+    durations = u[2] if dt is None else np.full(T, require_array("dt", dt, rule="finite and > 0"))
     if durations.ndim > 1 and (durations != durations[:, :1]).any():
         raise ParameterError("a log has one clock, but the dt in u differ over the batch; pass dt=")
     return np.cumsum(durations if durations.ndim == 1 else durations[:, 0, 0])

@@ -26,7 +26,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ParameterError
 from pfkit.models.landmark_sensors import LandmarkSensor
 from pfkit.models.sensors import Sensor
 
@@ -55,13 +54,6 @@ class MaximumLikelihood(Sensor):
     """
 
     sensor: LandmarkSensor
-
-    def __post_init__(self) -> None:
-        if not isinstance(self.sensor, LandmarkSensor):
-            raise ParameterError(
-                f"MaximumLikelihood needs Range, Bearing or RangeBearing, got {self.sensor!r:.80}; "
-                "put robust wrappers about it, not into it"
-            )
 
     @property
     def components(self) -> int:  # type: ignore[override]

@@ -19,14 +19,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ParameterError,
-    ShapeError,
-    as_numbers,
-    require_count,
-    require_finite,
-)
+from pfkit.errors import DataError, require_array
 from pfkit.models.beams import SHARES, BeamModel
 
 Array = NDArray[np.float64]
@@ -77,12 +70,8 @@ def fit_beams(
     r_max are left out of sigma_hit. One kind that hardly ever occurs is learned badly: look
     at the shares before you trust its width.
     """
-    if not isinstance(model, BeamModel):
-        raise ParameterError(f"model must be a BeamModel to start from, got {model!r:.60}")
-    r, length = require_finite("r", r, DataError).ravel(), as_numbers("length", length).ravel()
-    require_count("iterations", iterations)
-    if r.shape != length.shape or r.size == 0:
-        raise ShapeError(f"r and length must match and hold a reading, got {r.size}, {length.size}")
+    r = np.ravel(r)
+    length = require_array("length", np.ravel(length), r.shape, ">= 0", DataError)
     for _ in range(iterations):
         previous, model = model, _refit(model, r, length)
         old, new = _settings(previous), _settings(model)

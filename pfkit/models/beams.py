@@ -32,16 +32,8 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ParameterError,
-    ShapeError,
-    as_numbers,
-    require_finite,
-    require_fraction,
-    require_positive_number,
-    require_rng,
-)
+from pfkit.densities import draw_normal
+from pfkit.errors import DataError, ParameterError, require_array, require_fields
 from pfkit.models.sensors import Sensor
 from pfkit.worlds.occupancy import OccupancyGrid
 from pfkit.worlds.raycast import RayCaster
@@ -113,12 +105,15 @@ class BeamModel(Sensor):
     angles: ClassVar[tuple[int, ...]] = (1,)
 
     def __post_init__(self) -> None:
-        directions = require_finite("directions", self.directions)
-        if directions.ndim != 1 or directions.size == 0:
-            raise ShapeError(f"directions must have shape (K,), K >= 1, got {directions.shape}")
-        for name in ("r_max", "sigma_hit", "lambda_short"):
-            require_positive_number(name, getattr(self, name))
-        total = sum(require_fraction(name, getattr(self, name)) for name in SHARES)
+        directions = require_array("directions", self.directions, ("K",))
+        require_fields(
+            self,
+            r_max="finite and > 0",
+            sigma_hit="finite and > 0",
+            lambda_short="finite and > 0",
+            **dict.fromkeys(SHARES, "in [0, 1]"),
+        )
+        total = float(self.shares.sum())
         if abs(total - 1) > 1e-9:
             raise ParameterError(f"z_hit + z_short + z_max + z_rand must be 1, got {total}")
         object.__setattr__(self, "directions", directions)
@@ -145,10 +140,9 @@ class BeamModel(Sensor):
 
     def sample(self, pose: Array, rng: np.random.Generator) -> Array:
         """Readings with all four kinds of faults: (2, K, ...)."""
-        require_rng(rng)
         length = self.lengths(pose)
         shape = length.shape
-        hit = length + self.sigma_hit * rng.standard_normal(shape)
+        hit = length + self.sigma_hit * draw_normal(shape, rng)
         while (behind := hit < 0).any():  # the Gaussian ends at the sensor
             hit[behind] = length[behind] + self.sigma_hit * rng.standard_normal(behind.sum())
         unit = rng.random(shape)  # the exponential that ends at the wall, by inversion
@@ -163,12 +157,8 @@ class BeamModel(Sensor):
 
         Where r is r_max they are probabilities of reading r_max; elsewhere in 1 / metres.
         """
-        r, length = require_finite("r", r, DataError), as_numbers("length", length)
-        if not ((r >= 0).all() and (length >= 0).all()):
-            least = np.minimum(r.min(), length.min())  # NaN if there is one
-            raise DataError(
-                f"ranges and lengths must be >= 0, got {least}; a lost beam reads r_max"
-            )
+        r = require_array("r", r, rule="finite and >= 0", error=DataError)
+        length = require_array("length", length, rule=">= 0", error=DataError)
         r, length = np.broadcast_arrays(r, length)
         top, lam = r >= self.r_max, self.lambda_short
         scaled = (r - length) / self.sigma_hit

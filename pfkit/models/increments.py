@@ -19,7 +19,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import require_components, require_non_negative, require_rng
+from pfkit.densities import draw_normal
+from pfkit.errors import require_array
 from pfkit.geometry import between, compose
 
 Array = NDArray[np.float64]
@@ -43,7 +44,7 @@ def increments(poses: ArrayLike) -> Array:
     ShapeError, ParameterError
         If the poses are not (3, T) or not finite.
     """
-    poses = require_components("poses", poses, 3)
+    poses = require_array("poses", poses, (3, ...))
     return between(np.concatenate((poses[:, :1], poses[:, :-1]), axis=1), poses)
 
 
@@ -65,18 +66,17 @@ class IncrementMotion:
     sigma: tuple[float, float, float] = (0.01, 0.01, 0.01)
 
     def __post_init__(self) -> None:
-        sigma = require_components("sigma", require_non_negative("sigma", self.sigma), 3)
+        sigma = require_array("sigma", self.sigma, (3,), "finite and >= 0")
         object.__setattr__(self, "sigma", tuple(sigma.tolist()))
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free motion: pose (3, ...), u (3,) -> pose (3, ...)."""
-        u, pose = require_components("u", u, 3), require_components("pose", pose, 3)
+        u, pose = require_array("u", u, (3, ...)), require_array("pose", pose, (3, ...))
         return compose(pose, u[(..., *(None,) * (pose.ndim - u.ndim))])
 
     def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
         """Each particle repeats the motion with errors of its own: (3, ...), (3,) -> (3, ...)."""
-        require_rng(rng)
-        u, pose = require_components("u", u, 3), require_components("pose", pose, 3)
+        u, pose = require_array("u", u, (3, ...)), require_array("pose", pose, (3, ...))
         u = u[(..., *(None,) * (pose.ndim - u.ndim))]
         sigma = np.reshape(self.sigma, (3, *(1,) * (pose.ndim - 1)))
-        return compose(pose, u + sigma * rng.standard_normal(pose.shape))
+        return compose(pose, u + sigma * draw_normal(pose.shape, rng))

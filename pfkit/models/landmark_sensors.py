@@ -20,27 +20,21 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.densities import error_density
-from pfkit.errors import (
-    ParameterError,
-    require_components,
-    require_finite,
-    require_method,
-    require_number,
-    require_positive_number,
-)
+from pfkit.errors import require_array, require_fields
 from pfkit.geometry import _wrap, wrap
-from pfkit.models.sensors import Sensor, draw_errors, require_nu
+from pfkit.models.sensors import Sensor, draw_errors
 from pfkit.worlds.maps import LandmarkMap
 
 Array = NDArray[np.float64]
 
 
-def _seen(world: LandmarkMap, ids: ArrayLike | None, pose: Array) -> tuple[Array, Array]:
-    """Vectors (2, K, ...) from poses to landmarks, and their ids (K, ...)."""
+def _seen(world: LandmarkMap, ids: ArrayLike | None, pose: Array) -> tuple[Array, Array, Array]:
+    """Vectors (2, K, ...) from poses to landmarks, headings, and the landmarks' ids (K, ...)."""
+    pose = require_array("pose", pose, (3, ...))
     ids = world.ids if ids is None else np.asarray(ids)
     column = (slice(None), slice(None), *(None,) * (pose.ndim - 1))
     s = np.broadcast_to(ids.reshape(-1, *(1,) * (pose.ndim - 1)), (ids.size, *pose.shape[1:]))
-    return world.locate(ids)[column] - pose[:2, None], s
+    return world.locate(ids)[column] - pose[:2, None], pose[2], s
 
 
 class LandmarkSensor(Sensor):
@@ -56,10 +50,7 @@ class LandmarkSensor(Sensor):
     broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        require_method("world", self.world, "locate", "index")
-        for name in self.scales:
-            require_positive_number(name, getattr(self, name))
-        require_nu(self.nu)
+        require_fields(self, **dict.fromkeys(self.scales, "finite and > 0"), nu="> 0")
 
     def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
         """Noise-free measurement of landmarks (all if `ids` is left out): (n, K, ...)."""
@@ -116,13 +107,12 @@ class RangeBearing(LandmarkSensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_number("bias_phi", require_finite("bias_phi", self.bias_phi))
+        require_fields(self, bias_phi="finite")
 
     def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
         """Noise-free (but biased) ranges and bearings of landmarks: (3, K, ...)."""
-        pose = require_components("pose", pose, 3)
-        (dx, dy), s = _seen(self.world, ids, pose)
-        bearing = wrap(np.arctan2(dy, dx) - pose[2] + self.bias_phi)
+        (dx, dy), theta, s = _seen(self.world, ids, pose)
+        bearing = wrap(np.arctan2(dy, dx) - theta + self.bias_phi)
         return np.stack((np.hypot(dx, dy), bearing, s))
 
     def log_density(self, zk: Array, pose: Array) -> Array:
@@ -171,13 +161,12 @@ class Bearing(LandmarkSensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_number("bias_phi", require_finite("bias_phi", self.bias_phi))
+        require_fields(self, bias_phi="finite")
 
     def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
         """Noise-free (but biased) bearings of landmarks: (2, K, ...)."""
-        pose = require_components("pose", pose, 3)
-        (dx, dy), s = _seen(self.world, ids, pose)
-        return np.stack((wrap(np.arctan2(dy, dx) - pose[2] + self.bias_phi), s))
+        (dx, dy), theta, s = _seen(self.world, ids, pose)
+        return np.stack((wrap(np.arctan2(dy, dx) - theta + self.bias_phi), s))
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one measurement (phi, s) at poses (3, ...): shape (...)."""
@@ -219,18 +208,12 @@ class Range(LandmarkSensor):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        bias = require_finite("bias", self.bias)
-        if bias.shape not in ((), (len(self.world),)):
-            raise ParameterError(
-                f"bias must be one number or one per landmark ({len(self.world)}), "
-                f"got shape {bias.shape}"
-            )
+        bias = require_array("bias", self.bias, (len(self.world),) if np.ndim(self.bias) else ())
         object.__setattr__(self, "_biases", np.broadcast_to(bias, len(self.world)))
 
     def expected(self, pose: Array, ids: ArrayLike | None = None) -> Array:
         """Noise-free (but biased) ranges to landmarks: (2, K, ...)."""
-        pose = require_components("pose", pose, 3)
-        (dx, dy), s = _seen(self.world, ids, pose)
+        (dx, dy), _, s = _seen(self.world, ids, pose)
         return np.stack((np.hypot(dx, dy) + self._bias_of(s), s))
 
     def log_density(self, zk: Array, pose: Array) -> Array:

@@ -25,15 +25,10 @@ from typing import ClassVar
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DataError,
-    ParameterError,
-    require_fraction,
-    require_positive_number,
-)
+from pfkit.errors import DataError, ParameterError, require_array, require_fields
 from pfkit.models.sensors import Sensor
 from pfkit.worlds.distance import distance_field
-from pfkit.worlds.occupancy import OccupancyGrid, require_grid
+from pfkit.worlds.occupancy import OccupancyGrid
 
 Array = NDArray[np.float64]
 
@@ -74,10 +69,14 @@ class LikelihoodField(Sensor):
     angles: ClassVar[tuple[int, ...]] = (1,)
 
     def __post_init__(self) -> None:
-        require_grid(self.world)
-        require_positive_number("r_max", self.r_max)
-        require_positive_number("sigma_hit", self.sigma_hit)
-        hit, rand = require_fraction("z_hit", self.z_hit), require_fraction("z_rand", self.z_rand)
+        require_fields(
+            self,
+            r_max="finite and > 0",
+            sigma_hit="finite and > 0",
+            z_hit="in [0, 1]",
+            z_rand="in [0, 1]",
+        )
+        hit, rand = self.z_hit, self.z_rand
         if not 0 < hit + rand <= 1 + 1e-9:
             raise ParameterError(f"z_hit + z_rand must be in (0, 1], got {hit + rand}")
         scaled = distance_field(self.world.occupied, self.world.resolution) / self.sigma_hit
@@ -94,8 +93,7 @@ class LikelihoodField(Sensor):
     def log_likelihood(self, z: ArrayLike, pose: Array) -> Array:
         """Sum of log q over the beams: z (2, K) or (2, K, B, 1), one number per pose."""
         z = self.read(z)
-        if (z[0] < 0).any():
-            raise DataError(f"ranges must be >= 0, got {z[0].min()}; a lost beam reads r_max")
+        require_array("ranges", z[0], rule=">= 0", error=DataError)
         x, y, theta = self.check_state(pose)
         rows, columns = self._log_q.shape  # type: ignore[attr-defined]
         log_q = self._log_q.ravel()  # type: ignore[attr-defined]

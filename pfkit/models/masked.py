@@ -19,7 +19,6 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import require_method
 from pfkit.models.sensors import Sensor
 
 Array = NDArray[np.float64]
@@ -36,9 +35,6 @@ class Masked(Sensor):
     """
 
     sensor: Sensor
-
-    def __post_init__(self) -> None:
-        require_method("sensor", self.sensor, "log_density")
 
     @property
     def components(self) -> int:  # type: ignore[override]

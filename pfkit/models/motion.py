@@ -31,15 +31,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_components,
-    require_finite,
-    require_non_negative,
-    require_positive,
-    require_rng,
-)
+from pfkit.densities import draw_normal
+from pfkit.errors import ParameterError, require_array
 from pfkit.geometry import _wrap, between, wrap
 
 Array = NDArray[np.float64]
@@ -57,8 +50,7 @@ class MotionModel(Protocol):
 
 def draw_noise(variance: ArrayLike, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
     """Zero-mean Gaussian noise of a given variance: one number for each entry of the shape."""
-    require_rng(rng)
-    return np.sqrt(variance) * rng.standard_normal(shape)
+    return np.sqrt(variance) * draw_normal(shape, rng)
 
 
 def log_noise(error: Array, variance: Array) -> Array:
@@ -97,8 +89,8 @@ def drive_arc(pose: Array, distance: ArrayLike, turn: ArrayLike) -> Array:
     -----
     Source: Probabilistic Robotics, eq. 5.9, with its division by omega removed.
     """
-    pose, distance = require_components("pose", pose, 3), require_finite("distance", distance)
-    return _arc(pose, distance, require_finite("turn", turn))
+    pose, distance = require_array("pose", pose, (3, ...)), require_array("distance", distance)
+    return _arc(pose, distance, require_array("turn", turn))
 
 
 def _arc(pose: Array, distance: Array, turn: Array) -> Array:
@@ -186,31 +178,27 @@ class VelocityMotion:
     alpha: tuple[float, ...] = (0.05, 0.01, 0.01, 0.05, 0.0, 0.0)
 
     def __post_init__(self) -> None:
-        alpha = require_non_negative("alpha", self.alpha)
-        if alpha.shape not in ((4,), (6,)):
-            raise ShapeError(f"alpha must hold 4 or 6 numbers, got shape {alpha.shape}")
+        n = 6 if np.size(self.alpha) == 6 else 4
+        alpha = require_array("alpha", self.alpha, (n,), "finite and >= 0")
         object.__setattr__(self, "alpha", (*alpha.tolist(), 0.0, 0.0)[:6])
 
     def variances(self, u: ArrayLike) -> Array:
         """Variances (3, ...) of v, omega and gamma for a control u (3, ...)."""
-        return self._variances(require_components("u", u, 3))
-
-    def _variances(self, u: Array) -> Array:
-        v, omega, _ = u
+        v, omega, _ = np.asarray(u)
         a1, a2, a3, a4, a5, a6 = self.alpha
         v2, omega2 = v * v, omega * omega
         return np.array((a1 * v2 + a2 * omega2, a3 * v2 + a4 * omega2, a5 * v2 + a6 * omega2))
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free arc: pose (3, ...), u (3,) -> pose (3, ...)."""
-        v, omega, dt = require_components("u", u, 3)
-        return drive_arc(require_components("pose", pose, 3), v * dt, omega * dt)
+        v, omega, dt = np.asarray(u)
+        return drive_arc(pose, v * dt, omega * dt)
 
     def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
         """Each particle drives with errors of its own: (3, ...), (3,) -> (3, ...)."""
-        pose, u = require_components("pose", pose, 3), require_components("u", u, 3)
+        pose, u = require_array("pose", pose, (3, ...)), require_array("u", u, (3, ...))
         v, omega, dt = u
-        var_v, var_omega, var_gamma = self._variances(u)
+        var_v, var_omega, var_gamma = self.variances(u)
         shape = np.broadcast(pose[0], v).shape
         v_hat = v + draw_noise(var_v, shape, rng)
         omega_hat = omega + draw_noise(var_omega, shape, rng)
@@ -249,9 +237,8 @@ class VelocityMotion:
         Source: Probabilistic Robotics, Table 5.1, which leaves the Jacobian out. Arcs of more
         than a full turn in one step are not counted. The density has a pole at c = 0.
         """
-        u = require_components("u", u, 3)
-        v, omega, dt = u
-        require_positive("dt", dt)
+        v, omega, dt = np.asarray(u)
+        require_array("dt", dt, rule="finite and > 0")
         var_v, var_omega, var_gamma = self.variances(u)
         branches = []
         for backwards in (False, True):

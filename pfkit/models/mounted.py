@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import require_components, require_finite, require_method
+from pfkit.errors import require_array
 from pfkit.geometry import compose
 from pfkit.models.sensors import Sensor
 
@@ -46,8 +46,7 @@ class Mounted(Sensor):
     flipped: bool = False
 
     def __post_init__(self) -> None:
-        require_method("sensor", self.sensor, "log_likelihood")
-        mount = require_finite("mount", require_components("mount", self.mount, 3))
+        mount = require_array("mount", self.mount, (3,))
         object.__setattr__(self, "mount", tuple(mount.tolist()))
 
     @property

@@ -17,7 +17,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_components, require_non_negative
+from pfkit.errors import require_array
 from pfkit.geometry import between, wrap
 from pfkit.models.motion import draw_noise, log_noise
 
@@ -82,14 +82,12 @@ class OdometryMotion:
     alpha: tuple[float, float, float, float] = (0.01, 0.01, 0.01, 0.01)
 
     def __post_init__(self) -> None:
-        alpha = require_non_negative("alpha", self.alpha)
-        if alpha.shape != (4,):
-            raise ShapeError(f"alpha must hold 4 numbers, got shape {alpha.shape}")
+        alpha = require_array("alpha", self.alpha, (4,), "finite and >= 0")
         object.__setattr__(self, "alpha", tuple(alpha.tolist()))
 
     def variances(self, u: ArrayLike) -> Array:
         """Variances (3, ...) of rot1, trans and rot2 for a control u (3, ...)."""
-        rot1, trans, rot2 = require_components("u", u, 3)
+        rot1, trans, rot2 = np.asarray(u)
         a1, a2, a3, a4 = self.alpha
         rot1, trans, rot2 = rot1 * rot1, trans * trans, rot2 * rot2
         return np.stack(
@@ -98,12 +96,12 @@ class OdometryMotion:
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free turn, drive, turn: pose (3, ...), u (3,) -> pose (3, ...)."""
-        pose = require_components("pose", pose, 3)
-        return self._move(pose, *require_components("u", u, 3))
+        pose = require_array("pose", pose, (3, ...))
+        return self._move(pose, *np.asarray(u))
 
     def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
         """Each particle repeats the motion with errors of its own: (3, ...), (3,) -> (3, ...)."""
-        pose, u = require_components("pose", pose, 3), require_components("u", u, 3)
+        pose, u = require_array("pose", pose, (3, ...)), require_array("u", u, (3, ...))
         shape = np.broadcast_shapes(pose.shape[1:], u.shape[1:])
         noisy = [
             component + draw_noise(variance, shape, rng)
@@ -137,7 +135,7 @@ class OdometryMotion:
         Source: Probabilistic Robotics, Table 5.5, which leaves the Jacobian and the second
         move out. The density has a pole where the robot ends up where it was.
         """
-        u = require_components("u", u, 3)
+        u = np.asarray(u)
         var1, var_t, var2 = self.variances(u)
         _, _, turn = between(pose0, pose1)
         first, distance, _ = odometry_control(pose0, pose1)

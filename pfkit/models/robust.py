@@ -22,13 +22,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ShapeError,
-    require_fraction,
-    require_method,
-    require_non_negative_number,
-    require_positive_number,
-)
+from pfkit.errors import ShapeError, require_fields
 from pfkit.models.sensors import Sensor
 
 Array = NDArray[np.float64]
@@ -89,9 +83,7 @@ class OutlierMixture(_Wrapper):
     density: float
 
     def __post_init__(self) -> None:
-        require_method("sensor", self.sensor, "log_density")
-        require_fraction("epsilon", self.epsilon)
-        require_positive_number("density", self.density)
+        require_fields(self, epsilon="in [0, 1]", density="finite and > 0")
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log of the mixture for one measurement: shape (...)."""
@@ -139,8 +131,7 @@ class Gate(_Wrapper):
     threshold: float
 
     def __post_init__(self) -> None:
-        require_method("sensor", self.sensor, "log_density")
-        require_non_negative_number("threshold", self.threshold)
+        require_fields(self, threshold="finite and >= 0")
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """Log p of one measurement, or 0 where the set rejects it: shape (...)."""
@@ -152,8 +143,6 @@ class Gate(_Wrapper):
     def accepts(self, z: ArrayLike, pose: Array) -> NDArray[np.bool_]:
         """Which measurements (n, K) a set of poses (3, M) lets pass: (K,), or (K, B)."""
         z, pose = self.read(z), self.check_state(pose)
-        if pose.ndim < 2:
-            raise ShapeError(f"a gate asks a set of particles (3, M), got shape {pose.shape}")
         means = [
             _mean_density(self.sensor.log_density(z[:, k], pose))[..., 0] for k in range(z.shape[1])
         ]
@@ -197,8 +186,7 @@ class Tempered(_Wrapper):
     exponent: float
 
     def __post_init__(self) -> None:
-        require_method("sensor", self.sensor, "log_density")
-        require_fraction("exponent", self.exponent)
+        require_fields(self, exponent="in [0, 1]")
 
     def log_density(self, zk: Array, pose: Array) -> Array:
         """The exponent times the log density of one measurement: shape (...)."""

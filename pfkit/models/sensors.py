@@ -31,19 +31,8 @@ from typing import ClassVar, Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.densities import NUMBER, error_density, gaussian
-from pfkit.errors import (
-    DataError,
-    ParameterError,
-    ShapeError,
-    require_components,
-    require_finite,
-    require_number,
-    require_plane,
-    require_positive,
-    require_positive_number,
-    require_rng,
-)
+from pfkit.densities import draw_normal, error_density, gaussian
+from pfkit.errors import DataError, require_array, require_fields, require_rng
 from pfkit.geometry import wrap
 
 Array = NDArray[np.float64]
@@ -60,12 +49,6 @@ def how_many(z: ArrayLike | None) -> int:
     """Number K of measurements in a set (n, K, ...): 0 for None, 1 for a single one (n,)."""
     shape = (0,) if z is None else np.shape(z)
     return 0 if 0 in shape else shape[1] if len(shape) > 1 else 1
-
-
-def require_nu(nu: float) -> None:
-    """Raise `ParameterError` unless nu is a number > 0; inf is allowed, and means Gaussian."""
-    if not isinstance(nu, NUMBER) or not nu > 0:
-        raise ParameterError(f"nu must be > 0 (inf for a Gaussian), got {nu!r}")
 
 
 def draw_errors(sigma: float, nu: float, shape: tuple[int, ...], rng: np.random.Generator) -> Array:
@@ -93,11 +76,11 @@ class Sensor:
 
     def check_state(self, pose: ArrayLike) -> Array:
         """Return a pose (3, ...) as a finite array; sensors of other states say which."""
-        return require_components("pose", pose, 3)
+        return require_array("pose", pose, (3, ...))
 
     def read(self, z: ArrayLike) -> Array:
         """Return measurements (n, K, ...) as a finite array; a single one (n,) is a set of one."""
-        z = require_components("z", z, self.components, DataError)
+        z = require_array("z", z, (self.components, ...), error=DataError)
         return z if z.ndim > 1 else z[:, None]
 
     def log_density(self, zk: Array, pose: Array) -> Array:
@@ -164,9 +147,8 @@ class Position(Sensor):
     broadcasts: ClassVar[bool] = True
 
     def __post_init__(self) -> None:
-        sigma = require_positive("sigma", self.sigma)
-        if sigma.shape not in ((), (2,)):
-            raise ShapeError(f"sigma must be one number or two, got shape {sigma.shape}")
+        sizes = (2,) if np.ndim(self.sigma) else ()
+        sigma = require_array("sigma", self.sigma, sizes, "finite and > 0")
         object.__setattr__(self, "_sigmas", tuple(np.broadcast_to(sigma, 2).tolist()))
 
     def expected(self, pose: Array) -> Array:
@@ -175,14 +157,13 @@ class Position(Sensor):
 
     def check_state(self, pose: ArrayLike) -> Array:
         """Return a state (D, ...), D >= 2, as a finite array."""
-        return require_plane(pose)
+        return np.asarray(pose, dtype=float)
 
     def sample(self, pose: Array, rng: np.random.Generator) -> Array:
         """One noisy position: (2, 1, ...)."""
-        require_rng(rng)
         z = self.expected(pose)
         for row, sigma in zip(z, self._sigmas, strict=True):  # type: ignore[attr-defined]
-            row += sigma * rng.standard_normal(row.shape)
+            row += sigma * draw_normal(row.shape, rng)
         return z
 
     def log_density(self, zk: Array, pose: Array) -> Array:
@@ -218,13 +199,11 @@ class Compass(Sensor):
     angles: ClassVar[tuple[int, ...]] = (0,)
 
     def __post_init__(self) -> None:
-        require_positive_number("sigma_theta", self.sigma_theta)
-        require_number("bias", require_finite("bias", self.bias))
-        require_nu(self.nu)
+        require_fields(self, sigma_theta="finite and > 0", bias="finite", nu="> 0")
 
     def expected(self, pose: Array) -> Array:
         """Noise-free (but biased) heading: (1, 1, ...)."""
-        return wrap(require_components("pose", pose, 3)[2:, None] + self.bias)
+        return wrap(self.check_state(pose)[2:, None] + self.bias)
 
     def sample(self, pose: Array, rng: np.random.Generator) -> Array:
         """One noisy heading: (1, 1, ...)."""

@@ -26,14 +26,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    require_components,
-    require_finite,
-    require_non_negative_number,
-    require_number,
-    require_plane,
-    require_rng,
-)
+from pfkit.densities import draw_normal
+from pfkit.errors import require_array, require_fields
 from pfkit.geometry import wrap
 
 Array = NDArray[np.float64]
@@ -60,28 +54,26 @@ class FixedTarget:
     sigma_theta: float = 0.0
 
     def __post_init__(self) -> None:
-        require_non_negative_number("sigma", self.sigma)
-        require_non_negative_number("sigma_theta", self.sigma_theta)
+        require_fields(self, sigma="finite and >= 0", sigma_theta="finite and >= 0")
 
     def mean(self, state: ArrayLike, u: ArrayLike) -> Array:
         """Where the state (D, ...) goes without noise under u = (v, omega, dt)."""
-        return require_plane(state).copy()
+        return np.array(state, dtype=float)
 
     def sample(self, state: ArrayLike, u: ArrayLike, rng: np.random.Generator) -> Array:
         """One noisy step of every state (D, ...): fresh noise for each particle."""
-        require_rng(rng)
         moved = self.mean(state, u)
-        moved[:2] += self.sigma * rng.standard_normal((2, *moved.shape[1:]))
+        moved[:2] += self.sigma * draw_normal((2, *moved.shape[1:]), rng)
         if len(moved) > 2:
-            noise = self.sigma_theta * rng.standard_normal(moved.shape[1:])
+            noise = self.sigma_theta * draw_normal(moved.shape[1:], rng)
             moved[2] = wrap(moved[2] + noise)
         return moved
 
 
-def _ahead(state: Array, theta: float | Array, u: ArrayLike) -> Array:
+def _ahead(state: ArrayLike, theta: float | Array, u: ArrayLike) -> Array:
     """Positions moved by v dt along theta; the rest of the state unchanged."""
-    v, _, dt = require_components("u", u, 3)
-    moved = state.copy()
+    v, _, dt = np.asarray(u)
+    moved = np.array(state, dtype=float)
     moved[0] += v * dt * np.cos(theta)
     moved[1] += v * dt * np.sin(theta)
     return moved
@@ -103,10 +95,10 @@ class HeadingTarget(FixedTarget):
 
     def __post_init__(self) -> None:
         super().__post_init__()
-        require_number("heading", require_finite("heading", self.heading))
+        require_fields(self, heading="finite")
 
     def mean(self, state: ArrayLike, u: ArrayLike) -> Array:
-        return _ahead(require_plane(state), self.heading, u)
+        return _ahead(state, self.heading, u)
 
 
 @dataclass(frozen=True)
@@ -118,7 +110,7 @@ class LineTarget(FixedTarget):
     """
 
     def mean(self, state: ArrayLike, u: ArrayLike) -> Array:
-        state = require_components("state", state, 3)
+        state = require_array("state", state, (3, ...))
         return _ahead(state, state[2], u)
 
 
@@ -133,8 +125,8 @@ class CircleTarget(FixedTarget):
     """
 
     def mean(self, state: ArrayLike, u: ArrayLike) -> Array:
-        state = require_components("state", state, 3)
-        _, omega, dt = require_components("u", u, 3)
+        state = require_array("state", state, (3, ...))
         moved = _ahead(state, state[2], u)
+        _, omega, dt = np.asarray(u)
         moved[2] = wrap(moved[2] + omega * dt)
         return moved

@@ -21,13 +21,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    require_components,
-    require_finite,
-    require_non_negative_number,
-    require_positive_number,
-)
+from pfkit.errors import ParameterError, require_array, require_fields
 from pfkit.models.motion import draw_noise, drive_arc
 
 Array = NDArray[np.float64]
@@ -67,25 +61,29 @@ class DifferentialDrive:
     sigma_omega: float = 0.0
 
     def __post_init__(self) -> None:
-        for name in ("r", "L"):
-            require_positive_number(name, getattr(self, name))
-        for name in ("alpha", "sigma_v", "sigma_omega"):
-            require_non_negative_number(name, getattr(self, name))
+        require_fields(
+            self,
+            r="finite and > 0",
+            L="finite and > 0",
+            alpha="finite and >= 0",
+            sigma_v="finite and >= 0",
+            sigma_omega="finite and >= 0",
+        )
 
     def body_speed(self, left: ArrayLike, right: ArrayLike) -> tuple[Array, Array]:
         """Speed v (m/s) and turn rate omega (rad/s) from wheel speeds in rad/s."""
-        left, right = require_finite("left", left), require_finite("right", right)
+        left, right = np.asarray(left), np.asarray(right)
         return 0.5 * self.r * (right + left), self.r / self.L * (right - left)
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free arc: pose (3, ...), u (3,) -> pose (3, ...)."""
-        left, right, dt = require_components("u", u, 3)
+        left, right, dt = np.asarray(u)
         v, omega = self.body_speed(left, right)
-        return drive_arc(require_components("pose", pose, 3), v * dt, omega * dt)
+        return drive_arc(pose, v * dt, omega * dt)
 
     def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
         """Each particle's wheels slip on their own: (3, ...), (3,) -> (3, ...)."""
-        pose, u = require_components("pose", pose, 3), require_components("u", u, 3)
+        pose, u = require_array("pose", pose, (3, ...)), require_array("u", u, (3, ...))
         left, right, dt = u
         shape = np.broadcast_shapes(pose.shape[1:], u.shape[1:])
         v, omega = self.body_speed(
@@ -128,19 +126,18 @@ class Bicycle:
     sigma_delta: float = 0.02
 
     def __post_init__(self) -> None:
-        require_positive_number("L", self.L)
-        require_non_negative_number("alpha", self.alpha)
-        require_non_negative_number("sigma_delta", self.sigma_delta)
+        require_fields(
+            self, L="finite and > 0", alpha="finite and >= 0", sigma_delta="finite and >= 0"
+        )
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free arc: pose (3, ...), u (3,) -> pose (3, ...)."""
         v, delta, dt = self._control(u)
-        pose = require_components("pose", pose, 3)
         return drive_arc(pose, v * dt, v * dt * np.tan(delta) / self.L)
 
     def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
         """Each particle rolls and steers with errors of its own: (3, ...), (3,) -> (3, ...)."""
-        pose, u = require_components("pose", pose, 3), self._control(u)
+        pose, u = require_array("pose", pose, (3, ...)), self._control(u)
         v, delta, dt = u
         shape = np.broadcast_shapes(pose.shape[1:], u.shape[1:])
         distance = (v + draw_noise(self.alpha * v**2, shape, rng)) * dt
@@ -149,7 +146,7 @@ class Bicycle:
 
     @staticmethod
     def _control(u: ArrayLike) -> Array:
-        u = require_components("u", u, 3)
+        u = np.asarray(u)
         if not (np.abs(u[1]) < np.pi / 2).all():
             raise ParameterError(
                 f"the steering angle must be within a quarter turn, got {np.max(np.abs(u[1]))} "

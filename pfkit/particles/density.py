@@ -19,13 +19,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.densities import log_gaussian
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_components,
-    require_finite,
-    require_positive,
-)
+from pfkit.errors import ParameterError, require_array
 from pfkit.geometry import wrap
 from pfkit.particles.estimators import covariance
 from pfkit.particles.particle_set import Particles
@@ -50,7 +44,7 @@ def silverman_bandwidth(bel: Particles) -> Array:
     ShapeError
         If the set is a batch.
     """
-    D = len(_single(bel).state)
+    D = len(require_array("the state of one set", bel.state, ("D", "M")))
     return np.sqrt(np.diag(covariance(bel))) * (4 / ((D + 2) * bel.ess)) ** (1 / (D + 4))
 
 
@@ -79,14 +73,14 @@ def kde(bel: Particles, points: ArrayLike, bandwidth: ArrayLike | None = None) -
     -----
     O(M N) for N points. Heading differences are wrapped; keep h well below pi.
     """
-    D = len(_single(bel).state)
-    points = require_components("points", points, D)
-    h = silverman_bandwidth(bel) if bandwidth is None else require_finite("bandwidth", bandwidth)
-    if h.shape != (D,):
-        raise ShapeError(f"bandwidth must hold one width per component ({D}), got shape {h.shape}")
-    if bandwidth is None and not (h > 1e-9 * np.abs(bel.state).max()).all():  # only rounding
-        raise ParameterError(f"all particles agree in a component (widths {h}); give a bandwidth")
-    require_positive("bandwidth", h)
+    D = len(require_array("the state of one set", bel.state, ("D", "M")))
+    points = require_array("points", points, (D, ...))
+    if bandwidth is None:
+        h = silverman_bandwidth(bel)
+        if not (h > 1e-9 * np.abs(bel.state).max()).all():  # only rounding
+            raise ParameterError(f"all particles agree in a component (widths {h}); give bandwidth")
+    else:
+        h = require_array("bandwidth", bandwidth, (D,), "finite and > 0")
     flat, w = points.reshape(D, -1), bel.w
     density = np.empty(flat.shape[1])
     block = max(BLOCK // bel.M, 1)
@@ -98,9 +92,3 @@ def kde(bel: Particles, points: ArrayLike, bandwidth: ArrayLike | None = None) -
         log_kernel = sum(log_gaussian(difference[d], h[d]) for d in range(D))
         density[at] = np.exp(log_kernel) @ w
     return density.reshape(points.shape[1:])
-
-
-def _single(bel: Particles) -> Particles:
-    if bel.log_w.ndim != 1:
-        raise ShapeError(f"a density needs one set (D, M), got a batch {bel.log_w.shape}")
-    return bel

@@ -18,7 +18,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ParameterError, require_fraction
+from pfkit.errors import require_number
 from pfkit.geometry import wrap
 from pfkit.particles.particle_set import Particles, normalise
 
@@ -132,8 +132,7 @@ def top_share_mean(bel: Particles, share: float = 0.1) -> NDArray[np.float64]:
     ParameterError
         If the share is not in (0, 1].
     """
-    if require_fraction("share", share) == 0:
-        raise ParameterError("share must be > 0, got 0; the mean of no particles does not exist")
+    require_number("share", share, "in (0, 1]")
     n = int(np.ceil(share * bel.M))
     top = np.argsort(-bel.log_w, axis=-1, kind="stable")[..., :n]
     state = np.take_along_axis(bel.state, top[None], axis=-1)

@@ -26,14 +26,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_count,
-    require_finite,
-    require_fraction,
-    require_rng,
-)
+from pfkit.errors import ParameterError, ShapeError, require_count, require_number
 from pfkit.particles.resampling import Resampler
 
 Array = NDArray[np.float64]
@@ -53,8 +46,6 @@ class Genealogy:
     @property
     def ancestors(self) -> Indices:
         """Parents (T, M) or (T, B, M) of all steps so far."""
-        if not self._rows:
-            raise ShapeError("nothing recorded yet: pass this object as watch= to run")
         return np.stack(self._rows)
 
     def __repr__(self) -> str:
@@ -166,7 +157,7 @@ def drift_time(N: int, share: float = 0.5) -> float:
     Solves N - 1 linear equations: O(N^3), fine up to some thousand. Source: W. J. Ewens,
     Mathematical Population Genetics, ch. 3 (the Wright-Fisher model).
     """
-    N, share = require_count("N", N, 2), require_fraction("share", share)
+    N, share = require_count("N", N, 2), require_number("share", share, "in [0, 1]")
     i = round(share * N)
     if i in (0, N):
         return 0.0
@@ -209,11 +200,8 @@ def offspring_z(
     ParameterError, ShapeError
         If the weights are not one set of finite numbers >= 0, or the scheme is not a function.
     """
-    require_rng(rng)
-    w = require_finite("w", w)
-    if w.ndim != 1 or w.size == 0:
-        raise ShapeError(f"w must be the weights (M,) of one set, M >= 1, got {w.shape}")
-    draws, n = require_count("draws", draws, 2), w.size if n is None else require_count("n", n)
+    w = np.asarray(w, dtype=float)
+    n = w.size if n is None else n
     counts = np.stack([np.bincount(scheme(w, rng, n), minlength=w.size) for _ in range(draws)])
     excess = counts.mean(axis=0) - n * w / w.sum()
     excess[np.abs(excess) < 1e-9 * n] = 0.0
@@ -225,10 +213,10 @@ def offspring_z(
 def _indices(value: ArrayLike, least: int = 2) -> Indices:
     """Whole numbers with at least this many axes and one particle; indices stay below M."""
     a = np.asarray(value)
-    if a.ndim < least or a.shape[-1] == 0:
-        raise ShapeError(f"ancestors must be (T, M) or (T, B, M) with M >= 1, got {a.shape}")
-    if a.dtype.kind not in "iu":
-        raise ParameterError(f"ancestors must be whole numbers, got {a.dtype}; pass int64")
+    if a.dtype.kind not in "iu" or a.ndim < least or a.shape[-1] == 0:
+        raise ShapeError(
+            f"ancestors must be whole numbers (T, M) or (T, B, M), got {a.dtype} of shape {a.shape}"
+        )
     if least == 2 and a.size and (a.min() < 0 or a.max() >= a.shape[-1]):
         raise ParameterError(
             f"ancestors must lie in 0..{a.shape[-1] - 1}, got {a.min()}..{a.max()}"

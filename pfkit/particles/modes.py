@@ -18,7 +18,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_positive, whole_cells
+from pfkit.errors import require_array, whole_cells
 from pfkit.particles.estimators import mean_pose
 from pfkit.particles.particle_set import Particles, normalise
 
@@ -64,13 +64,8 @@ def clusters(bel: Particles, cell: ArrayLike = (1.0, 1.0, math.pi / 4)) -> Clust
     -----
     O(M log M) for sorting particles into cells; then 3^D - 1 neighbours for each occupied cell.
     """
-    cell = require_positive("cell", cell)
-    D = len(bel.state)
-    if bel.log_w.ndim != 1 or cell.shape != (D,):
-        raise ShapeError(
-            f"clusters need one set (D, M) and one cell size per component, got state "
-            f"{bel.state.shape} and cell {cell.shape}; pass cell (D,)"
-        )
+    D = len(require_array("the state of one set", bel.state, ("D", "M")))
+    cell = require_array("cell", cell, (D,), "finite and > 0")
     size, turn = cell.copy(), 0
     if D >= 3:
         turn = math.ceil(2 * math.pi / cell[2])

@@ -35,9 +35,7 @@ from pfkit.errors import (
     DegenerateWeightsError,
     ParameterError,
     Shape,
-    ShapeError,
-    as_numbers,
-    require_finite,
+    require_array,
     require_shape,
 )
 
@@ -65,25 +63,16 @@ class Particles:
     log_w: NDArray[np.float64]
 
     def __post_init__(self) -> None:
-        object.__setattr__(self, "state", require_finite("state", self.state))
-        object.__setattr__(self, "log_w", as_numbers("log_w", self.log_w))
-        if self.state.ndim < 2 or self.state.shape[1:] != self.log_w.shape:
-            raise ShapeError(
-                f"state (D, M) and log_w (M,) must match, got {self.state.shape} and "
-                f"{self.log_w.shape}; components come first, so transpose an (M, D) array"
-            )
-        if self.log_w.size == 0:
-            raise ShapeError(
-                f"a particle set must not be empty, got shape {self.log_w.shape}; draw at least one"
-            )
+        state = require_array("state", self.state, ("D", "M", ...))
+        log_w = require_array("log_w of state (D, M)", self.log_w, state.shape[1:], rule=None)
+        object.__setattr__(self, "state", state)
+        object.__setattr__(self, "log_w", log_w)
         peak = self.log_w.max(axis=-1)
-        if not (peak < 1e-9).all():
+        if not (np.isfinite(peak) & (peak < 1e-9)).all():
             raise ParameterError(
                 f"log_w must be logarithms of weights that sum to 1, got {np.max(peak)}; "
                 "build a set from linear weights with from_weights"
             )
-        if np.isneginf(peak).any():
-            raise DegenerateWeightsError("every weight is 0: log_w is -inf; draw new particles")
 
     @classmethod
     def trusted(cls, state: NDArray[np.float64], log_w: NDArray[np.float64]) -> Particles:
@@ -112,14 +101,6 @@ class Particles:
     def __repr__(self) -> str:
         shape = " x ".join(str(n) for n in self.log_w.shape)
         return f"Particles({shape} of dimension {self.state.shape[0]}, ESS {np.mean(self.ess):.1f})"
-
-
-def _log_weights(log_w: ArrayLike) -> NDArray[np.float64]:
-    """Log-weights as a float array (..., M); M >= 1."""
-    log_w = as_numbers("log_w", log_w)
-    if log_w.ndim == 0 or log_w.size == 0:
-        raise ShapeError(f"log_w must have shape (..., M) with M >= 1, got {log_w.shape}")
-    return log_w
 
 
 def normalise(
@@ -155,7 +136,7 @@ def normalise(
     >>> np.exp(log_w), round(float(log_sum) + 1000.0, 6)
     (array([0.5, 0.5]), 0.693147)
     """
-    log_w = _log_weights(log_w)
+    log_w = require_array("log_w", log_w, (..., "M"), rule=None)
     peak = log_w.max(axis=-1, keepdims=True)
     if not math.isfinite(peak.sum()):
         bad = peak[~np.isfinite(peak)].flat[0]
@@ -206,7 +187,7 @@ def ess(log_w: ArrayLike) -> NDArray[np.float64] | np.float64:
     2.667
     """
     with np.errstate(over="ignore"):
-        w = np.exp(_log_weights(log_w))
+        w = np.exp(require_array("log_w", log_w, (..., "M"), rule=None))
     total, squares = w.sum(axis=-1), np.einsum("...m,...m->...", w, w)
     if not ((squares > 0) & (squares < np.inf)).all():
         raise DegenerateWeightsError(
@@ -257,15 +238,9 @@ def from_weights(state: ArrayLike, w: ArrayLike | None = None) -> Particles:
     ShapeError
         If the shapes do not belong together or the set is empty.
     """
-    state = require_finite("state", state)
-    if state.ndim < 2 or state.shape[-1] == 0:
-        raise ShapeError(f"state must have shape (D, M) with M >= 1, got {state.shape}")
+    state = np.asarray(state, dtype=float)
     if w is None:
         return Particles(state, equal_log_weights(state.shape[1:]))
-    w = require_finite("w", w)
-    if (w < 0).any():
-        raise ParameterError(f"weights must be >= 0, got {w.min()}; likelihoods are never negative")
-    if w.shape != state.shape[1:]:
-        raise ShapeError(f"w must have shape {state.shape[1:]} to match state, got {w.shape}")
+    w = require_array("w", w, state.shape[1:], "finite and >= 0")
     with np.errstate(divide="ignore"):  # log 0 = -inf is what a weight of zero means
         return Particles(state, normalise(np.log(w))[0])

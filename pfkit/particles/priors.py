@@ -18,14 +18,8 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    Shape,
-    ShapeError,
-    require_covariance,
-    require_finite,
-    require_rng,
-    require_shape,
-)
+from pfkit.densities import draw_normal
+from pfkit.errors import Shape, require_array, require_covariance
 from pfkit.geometry import wrap
 from pfkit.particles.particle_set import Particles, equal_log_weights
 
@@ -61,9 +55,8 @@ def uniform_prior(M: Shape, world: SamplesPoses, rng: np.random.Generator) -> Pa
     -----
     Source: Probabilistic Robotics, Table 8.2 and section 8.3.1 (global localisation).
     """
-    shape = require_shape("number of particles M", M)
-    require_rng(rng)
-    return Particles(world.sample_poses(shape, rng), equal_log_weights(shape))
+    log_w = equal_log_weights(M)
+    return Particles(world.sample_poses(log_w.shape, rng), log_w)
 
 
 def gaussian_prior(
@@ -89,15 +82,12 @@ def gaussian_prior(
     ShapeError, ParameterError
         If mean and Sigma do not match, or Sigma is not a covariance.
     """
-    mean, shape = require_finite("mean", mean), require_shape("number of particles M", M)
-    require_rng(rng)
-    if mean.ndim != 1:
-        raise ShapeError(f"mean must have shape (D,), got {mean.shape}")
-    D = mean.size
+    mean, log_w = require_array("mean", mean, ("D",)), equal_log_weights(M)
+    D, shape = mean.size, log_w.shape
     values, vectors = np.linalg.eigh(require_covariance("Sigma", Sigma, D))
     root = vectors * np.sqrt(np.maximum(values, 0.0))
-    noise = np.tensordot(root, rng.standard_normal((D, *shape)), axes=1)
+    noise = np.tensordot(root, draw_normal((D, *shape), rng), axes=1)
     state = mean.reshape(D, *(1,) * len(shape)) + noise
     if heading and D >= 3:
         state[2] = wrap(state[2])
-    return Particles(state, equal_log_weights(shape))
+    return Particles(state, log_w)

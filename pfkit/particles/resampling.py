@@ -28,15 +28,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    DegenerateWeightsError,
-    ParameterError,
-    PfkitError,
-    ShapeError,
-    as_numbers,
-    require_count,
-    require_rng,
-)
+from pfkit.errors import DegenerateWeightsError, require_array, require_count, require_rng
 from pfkit.particles import ticks
 
 Array = NDArray[np.float64]
@@ -47,28 +39,15 @@ MANY = 5000  # weights from which on whole numbers are faster than floats
 
 def _read(w: ArrayLike, rng: np.random.Generator, n: int | None) -> tuple[Array, Array, int]:
     """Weights that are known to be usable, their sum (..., 1), and the number of draws."""
-    w = as_numbers("weights", w)
-    if w.ndim == 0 or w.size == 0:
-        raise ShapeError(
-            f"weights must have shape (M,) or (B, M) with M >= 1, got {w.shape}; draw particles"
-        )
+    w = require_array("weights", w, (..., "M"), ">= 0")
     require_rng(rng)
-    if not w.min() >= 0:  # the minimum of a set with a NaN is NaN
-        raise ParameterError(f"weights must be >= 0, got {w.min()}; pass w, not log-weights")
     total = w.sum(axis=-1, keepdims=True)
     if not (total.min() > 1e-280 and total.max() < 1e280):
-        raise _weight_error(total)
+        raise DegenerateWeightsError(
+            f"the sum of weights must lie in 1e-280 to 1e280, got {total.min()} to {total.max()}; "
+            "look for a likelihood of 0, keep log-weights and let normalise() scale them"
+        )
     return w, total, w.shape[-1] if n is None else require_count("n", n)
-
-
-def _weight_error(total: Array) -> PfkitError:
-    """What is wrong with sums of weights that cannot be scaled to one."""
-    if not (total > 0).all():
-        return DegenerateWeightsError("all weights are 0: nothing to copy; check the likelihood")
-    return ParameterError(
-        f"the sum of weights must lie in 1e-280 to 1e280, got {total.min()} to {total.max()}; "
-        "keep log-weights and let normalise() scale them"
-    )
 
 
 def _comb(w: Array, n: int, u: Array) -> Indices:

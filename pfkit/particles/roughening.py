@@ -24,7 +24,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_non_negative_number, require_rng
+from pfkit.densities import draw_normal
+from pfkit.errors import ParameterError
 from pfkit.geometry import wrap
 from pfkit.particles.estimators import covariance, deviation
 from pfkit.particles.particle_set import Particles
@@ -61,11 +62,9 @@ def roughen(
     of the heading is measured about its mean direction.
     """
     where = _fresh(bel, where)
-    require_rng(rng)
-    K = require_non_negative_number("K", K)
     extent = np.ptp(deviation(bel), axis=-1)
     scale = K * extent[..., None] * bel.M ** (-1 / len(bel.state))
-    return _jitter(bel, scale * rng.standard_normal(bel.state.shape), where)
+    return _jitter(bel, scale * draw_normal(bel.state.shape, rng), where)
 
 
 def regularise(bel: Particles, rng: np.random.Generator, where: ArrayLike = True) -> Particles:
@@ -93,22 +92,18 @@ def regularise(bel: Particles, rng: np.random.Generator, where: ArrayLike = True
     right for one Gaussian mode. Two modes far apart have a large Sigma and are smeared too much.
     """
     where = _fresh(bel, where)
-    require_rng(rng)
     D = len(bel.state)
     h = (4 / (D + 2)) ** (1 / (D + 4)) * bel.M ** (-1 / (D + 4))
     values, vectors = np.linalg.eigh(np.moveaxis(covariance(bel), (0, 1), (-2, -1)))
     root = vectors * np.sqrt(np.maximum(values, 0.0))[..., None, :]
-    noise = np.einsum("...ij,j...m->i...m", root, rng.standard_normal(bel.state.shape))
+    noise = np.einsum("...ij,j...m->i...m", root, draw_normal(bel.state.shape, rng))
     return _jitter(bel, h * noise, where)
 
 
 def _fresh(bel: Particles, where: ArrayLike) -> NDArray[np.bool_]:
     """Which filters of the set to treat, after a check that they were just resampled."""
     batch = bel.log_w.shape[:-1]
-    chosen = np.asarray(where)
-    if chosen.dtype != bool or chosen.shape not in ((), batch):
-        raise ShapeError(f"where must be True, False or bool {batch}, got {where!r:.60}")
-    chosen = np.broadcast_to(chosen, batch)
+    chosen = np.broadcast_to(np.asarray(where, dtype=bool), batch)
     if np.ptp(bel.log_w, axis=-1)[chosen].any():
         raise ParameterError(
             "noise on weighted particles would be process noise; resample first, or pass "

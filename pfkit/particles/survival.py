@@ -27,7 +27,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_count, require_finite
+from pfkit.errors import require_array, require_count
 
 Array = NDArray[np.float64]
 
@@ -66,13 +66,7 @@ def survival_probability(w: ArrayLike, scheme: str, n: int | None = None) -> Arr
     >>> survival_probability([0.5, 0.3, 0.2], "multinomial").round(3)
     array([0.875, 0.657, 0.488])
     """
-    w = require_finite("w", w)
-    if w.ndim != 1 or w.size == 0:
-        raise ShapeError(f"w must have shape (M,) with M >= 1, got {w.shape}; one set at a time")
-    if w.min() < 0 or not w.sum() > 0:
-        raise ParameterError(f"w must be >= 0 and not all 0, got a minimum of {w.min()}")
-    if scheme not in _FORMULAS:
-        raise ParameterError(f"scheme must be one of {sorted(_FORMULAS)}, got {scheme!r}")
+    w = require_array("w", w, ("M",), "finite and >= 0")
     n = w.size if n is None else require_count("n", n)
     return np.minimum(_FORMULAS[scheme](w / w.sum(), n), 1.0)
 

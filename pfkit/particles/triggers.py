@@ -32,7 +32,7 @@ from collections.abc import Callable
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import require_count, require_fraction, require_non_negative_number
+from pfkit.errors import require_count, require_number
 from pfkit.particles.particle_set import Particles
 
 Trigger = Callable[[Particles, int], "bool | np.bool_ | NDArray[np.bool_]"]
@@ -59,7 +59,7 @@ def ess_below(share: float = 0.5) -> Trigger:
     -----
     Source: J. S. Liu and R. Chen, JASA 93 (1998).
     """
-    share = require_fraction("share", share)
+    share = require_number("share", share, "in [0, 1]")
     return lambda bel, k: bel.ess < share * bel.M
 
 
@@ -102,7 +102,7 @@ def on_information(nats: float) -> Trigger:
     ParameterError
         If nats is negative or not finite.
     """
-    level = require_non_negative_number("nats", nats)
+    level = require_number("nats", nats, "finite and >= 0")
     return lambda bel, k: information(bel) > level
 
 

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import ParameterError, require_positive_number
+from pfkit.errors import ParameterError
 from pfkit.worlds.maps import LandmarkMap
 from pfkit.worlds.occupancy import OccupancyGrid
 
@@ -118,8 +118,6 @@ def circle_route(v: float = 0.5, dt: float = 0.5) -> NDArray[np.float64]:
     v : float, > 0, m/s
     dt : float, > 0, seconds
     """
-    require_positive_number("v", v)
-    require_positive_number("dt", dt)
     T = round(2 * np.pi * 5.0 / (v * dt))
     omega = 2 * np.pi / (T * dt)  # so that T whole steps close the circle
     return np.tile(np.array([[5.0 * omega], [omega], [dt]]), T)

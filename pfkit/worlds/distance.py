@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ParameterError, ShapeError, require_positive_number
+from pfkit.errors import ShapeError, require_number
 
 Array = NDArray[np.float64]
 
@@ -47,12 +47,11 @@ def distance_field(occupied: ArrayLike, resolution: float = 1.0) -> Array:
     functions", Theory of Computing 8 (2012), for the split; the search here is simpler.
     """
     occupied = np.asarray(occupied)
-    require_positive_number("resolution", resolution)
-    if occupied.ndim != 2 or occupied.size == 0:
-        raise ShapeError(f"occupied must have shape (rows, columns), got {occupied.shape}")
-    if occupied.dtype != bool:
-        raise ParameterError(
-            f"occupied must hold booleans, got {occupied.dtype}; pass grid.occupied, not grid.p"
+    require_number("resolution", resolution, "finite and > 0")
+    if occupied.dtype != bool or occupied.ndim != 2 or occupied.size == 0:
+        raise ShapeError(
+            f"occupied must be booleans (rows, columns), got {occupied.dtype} of shape "
+            f"{occupied.shape}; pass grid.occupied, not grid.p"
         )
     along = _along_columns(occupied) ** 2
     squared = along.copy()

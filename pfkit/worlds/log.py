@@ -16,7 +16,7 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from pfkit.errors import DataError, as_numbers, require_finite
+from pfkit.errors import DataError, require_array
 from pfkit.worlds.rig import ODOMETRY, Rig
 
 
@@ -83,33 +83,22 @@ class Log:
     notes: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
-        for name in ("t", "u", "truth", "start"):
-            value = getattr(self, name)
+        T = np.size(self.t)
+        shapes = dict(t=(T,), u=("n", T, ...), truth=("D", T, ...), start=(...,))
+        for name, shape in shapes.items():
+            value, rule = getattr(self, name), None if name == "truth" else "finite"
             if value is not None:
-                numbers = as_numbers if name == "truth" else require_finite
-                object.__setattr__(self, name, numbers(name, value, DataError))
-        self._require_shapes()
-        self._require_one_length()
+                object.__setattr__(self, name, require_array(name, value, shape, rule, DataError))
+        if len(self.z) != T or any(getattr(zk, "ndim", 0) < 2 for zk in self.z):
+            raise DataError(
+                f"z must be a list of {T} arrays (n, K), one per step and one column for each "
+                f"measurement, got {len(self.z)}: {self.z!r:.60}"
+            )
+        if self.scored is not None and len(self.scored) != T:
+            raise DataError(f"log has {T} times but {len(self.scored)} of scored; align them")
         back = np.flatnonzero(np.diff(self.t) < 0)
         if back.size:
             raise DataError(f"time runs backwards after t = {self.t[back[0]]}; sort the log")
-
-    def _require_shapes(self) -> None:
-        if self.t.ndim != 1 or self.u.ndim < 2:
-            raise DataError(
-                f"a log needs t (T,) and u (n, T), got {self.t.shape} and {self.u.shape}; "
-                "components come first"
-            )
-        if self.truth is not None and self.truth.ndim < 2:
-            raise DataError(f"truth must have shape (3, T), got {self.truth.shape}")
-        if not hasattr(self.z, "__len__"):
-            raise DataError(f"z must be a list of arrays (n, K), one per step, got {self.z!r:.60}")
-        bare = [k for k, zk in enumerate(self.z) if getattr(zk, "ndim", 0) < 2]
-        if bare:
-            raise DataError(
-                f"each z must be an array (n, K), got {self.z[bare[0]]!r:.60} at step {bare[0]}; "
-                "one measurement is one column"
-            )
         if self.rig is not None:
             self._require_rows(self.rig)
 
@@ -126,17 +115,6 @@ class Log:
                 f"odometry as {rig.odometry} has the rows {', '.join(ODOMETRY[rig.odometry])}, "
                 f"but u has {len(self.u)}; state another"
             )
-
-    def _require_one_length(self) -> None:
-        T = len(self.t)
-        lengths = {"u": self.u.shape[1], "z": len(self.z)}
-        if self.truth is not None:
-            lengths["truth"] = self.truth.shape[1]
-        if self.scored is not None:
-            lengths["scored"] = len(self.scored)
-        for name, length in lengths.items():
-            if length != T:
-                raise DataError(f"log has {T} times but {length} columns of {name}; align them")
 
     def __len__(self) -> int:
         return len(self.t)

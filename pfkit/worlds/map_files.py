@@ -27,6 +27,7 @@ Whatever is wrong with a file is a `DataError` that names the file and the reaso
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 from typing import NamedTuple
 
@@ -207,32 +208,24 @@ def read_pgm(path: Path) -> tuple[NDArray[np.int64], int]:
     return grey.reshape(height, width), white
 
 
+HEADER = re.compile(rb"(P[25])" + 3 * rb"(?:\s|#[^\n]*\n)+(\d+)" + rb"\s")
+
+
 def _header(path: Path, data: bytes) -> tuple[bytes, int, int, int, int]:
-    """Magic number, width, height, white, and where the pixels start."""
-    words: list[bytes] = []
-    at = 0
-    while len(words) < 4 and at < len(data):
-        if data[at : at + 1].isspace():
-            at += 1
-        elif data[at : at + 1] == b"#":
-            at = data.find(b"\n", at) if b"\n" in data[at:] else len(data)
-        else:
-            end = at
-            while end < len(data) and not data[end : end + 1].isspace():
-                end += 1
-            words.append(data[at:end])
-            at = end
-    if not words or words[0] not in (b"P2", b"P5"):
-        raise DataError(f"{path}: not a PGM picture: it must start with P2 or P5")
-    if len(words) < 4 or not all(word.isdigit() for word in words[1:]):
-        raise DataError(f"{path}: bad header {words}; a PGM has width, height and white's value")
-    width, height, white = (int(word) for word in words[1:])
+    """Magic word, width, height and white's value of a PGM, and where its pixels start."""
+    found = HEADER.match(data)
+    if found is None:
+        raise DataError(
+            f"{path}: bad header {data[:20]!r}; a PGM starts with P2 or P5, width, height and "
+            "white's value"
+        )
+    width, height, white = (int(word) for word in found.groups()[1:])
     if width < 1 or height < 1 or not 1 <= white <= 65535:
         raise DataError(
             f"{path}: {width} x {height} pixels with white {white}; sizes must be >= 1 and white "
             "1 .. 65535"
         )
-    return words[0], width, height, white, at + 1
+    return found[1], width, height, white, found.end()
 
 
 def write_pgm(path: Path, grey: NDArray[np.uint8], text: bool = False) -> None:

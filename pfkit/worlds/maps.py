@@ -22,11 +22,10 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     ParameterError,
     Shape,
-    ShapeError,
     UnknownLandmarkError,
     as_numbers,
-    require_components,
-    require_finite,
+    require_array,
+    require_bounds,
     require_rng,
     require_shape,
 )
@@ -56,25 +55,16 @@ class LandmarkMap:
     _order: NDArray[np.int64] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
-        positions = require_components("positions", self.positions, 2)
-        if positions.ndim != 2 or positions.shape[1] == 0:
-            raise ShapeError(f"positions must have shape (2, L), L >= 1, got {positions.shape}")
+        positions = require_array("positions", self.positions, (2, "L"))
         L = positions.shape[1]
-        ids = np.arange(L) if self.ids is None else require_finite("ids", self.ids)
-        if (ids % 1 != 0).any():
-            raise ParameterError(f"ids must be whole numbers, got {ids.tolist()}")
+        ids = np.arange(L) if self.ids is None else require_array("ids", self.ids, (L,), "whole")
         ids = ids.astype(np.int64)
-        if ids.shape != (L,) or np.unique(ids).size != L:
+        if np.unique(ids).size != L:
             raise ParameterError(f"ids must be {L} different integers, got {ids.tolist()}")
         if self.bounds is None:
             (x0, y0), (x1, y1) = positions.min(axis=1), positions.max(axis=1)
         else:
-            box = require_finite("bounds", self.bounds)
-            x0, x1, y0, y1 = box if box.shape == (4,) else np.zeros(4)
-            if not (x0 < x1 and y0 < y1):
-                raise ParameterError(
-                    f"bounds must be (x_min, x_max, y_min, y_max), got {self.bounds}"
-                )
+            x0, x1, y0, y1 = require_bounds(self.bounds)
         object.__setattr__(self, "positions", positions)
         object.__setattr__(self, "ids", ids)
         object.__setattr__(self, "bounds", (float(x0), float(x1), float(y0), float(y1)))
@@ -155,5 +145,5 @@ class LandmarkMap:
         bool array, of the common shape
         """
         x0, x1, y0, y1 = self.bounds
-        x, y = require_finite("x", x), require_finite("y", y)
+        x, y = require_array("x", x), require_array("y", y)
         return (x0 <= x) & (x <= x1) & (y0 <= y) & (y <= y1)

@@ -28,12 +28,8 @@ from pfkit.errors import (
     ParameterError,
     Shape,
     ShapeError,
-    as_path,
-    require_finite,
-    require_fraction,
-    require_positive_number,
-    require_rng,
-    require_shape,
+    require_array,
+    require_fields,
 )
 from pfkit.worlds.map_files import read_cells, read_settings, write_pgm
 
@@ -67,17 +63,11 @@ class OccupancyGrid:
     free_thresh: float = 0.196
 
     def __post_init__(self) -> None:
-        p = require_finite("p", self.p)
-        if p.ndim != 2 or p.size == 0:
-            raise ShapeError(f"p must have shape (rows, columns), got {p.shape}")
-        if p.min() < 0 or p.max() > 1:
-            raise ParameterError(f"p must hold probabilities, got {p.min()} to {p.max()}")
-        require_positive_number("resolution", self.resolution)
-        origin = require_finite("origin", self.origin)
-        if origin.shape != (3,):
-            raise ShapeError(f"origin must be (x, y, yaw), got shape {origin.shape}")
-        for name in ("free_thresh", "occupied_thresh"):
-            require_fraction(name, getattr(self, name))
+        p = require_array("p", self.p, ("rows", "columns"), "in [0, 1]")
+        origin = require_array("origin", self.origin, (3,))
+        require_fields(
+            self, resolution="finite and > 0", free_thresh="in [0, 1]", occupied_thresh="in [0, 1]"
+        )
         if self.free_thresh > self.occupied_thresh:
             raise ParameterError(
                 "thresholds must satisfy 0 <= free <= occupied <= 1, got "
@@ -111,7 +101,7 @@ class OccupancyGrid:
     def to_cells(self, x: ArrayLike, y: ArrayLike) -> Array:
         """Column and row, with fractions, of points in the world: (2, ...)."""
         x0, y0, yaw = self.origin
-        dx, dy = require_finite("x", x) - x0, require_finite("y", y) - y0
+        dx, dy = require_array("x", x) - x0, require_array("y", y) - y0
         c, s = np.cos(yaw) / self.resolution, np.sin(yaw) / self.resolution
         return np.stack((c * dx + s * dy, c * dy - s * dx))
 
@@ -137,8 +127,6 @@ class OccupancyGrid:
         ParameterError
             If the map has no free cell.
         """
-        shape = require_shape("number of poses", shape)
-        require_rng(rng)
         rows, columns = np.nonzero(self.free)
         if rows.size == 0:
             raise ParameterError(
@@ -158,7 +146,7 @@ class OccupancyGrid:
         DataError
             If a file is missing, cut off or malformed; names file and reason.
         """
-        path = as_path("path", path)
+        path = Path(path)
         found = read_settings(path)
         p = read_cells(path, found)
         try:
@@ -168,7 +156,7 @@ class OccupancyGrid:
 
     def save(self, path: str | Path, text: bool = False) -> None:
         """Write the YAML file, and beside it the picture (P5; P2 if text), 256 shades of grey."""
-        path = as_path("path", path)
+        path = Path(path)
         picture = path.with_suffix(".pgm")
         x, y, yaw = self.origin
         write_pgm(picture, np.round(255 * (1.0 - self.p[::-1])).astype(np.uint8), text)
@@ -177,12 +165,4 @@ class OccupancyGrid:
             f"origin: [{x!r}, {y!r}, {yaw!r}]\nnegate: 0\n"
             f"occupied_thresh: {self.occupied_thresh!r}\nfree_thresh: {self.free_thresh!r}\n",
             encoding="utf-8",
-        )
-
-
-def require_grid(world: Any) -> None:
-    """Raise `ParameterError` unless `world` is an OccupancyGrid."""
-    if not isinstance(world, OccupancyGrid):
-        raise ParameterError(
-            f"world must be an OccupancyGrid, got {world!r:.60}; load one or wrap a table of walls"
         )

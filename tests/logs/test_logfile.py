@@ -77,14 +77,21 @@ def test_a_batch_is_refused(tmp_path):
         batch=2,
         steps=3,
     )
-    with pytest.raises(pf.ShapeError, match="single"):
+    with pytest.raises(ValueError, match="same number of dimensions"):
         pf.save_log(log, tmp_path)
+
+
+@pytest.mark.parametrize("name", ["steps.txt", "bounds.txt"])
+def test_a_missing_file_is_named(tmp_path, name):
+    pf.save_log(make_log(), tmp_path)
+    (tmp_path / name).unlink()
+    with pytest.raises(FileNotFoundError, match=name):
+        pf.read_log(tmp_path)
 
 
 @pytest.mark.parametrize(
     ("name", "text", "message"),
     [
-        ("steps.txt", None, "no such file"),
         ("steps.txt", "", "line 1"),
         ("steps.txt", "1 2 3\n", "line 1"),
         ("steps.txt", "# time u1\n0 1\n1 nan\n", "line 3"),
@@ -92,14 +99,10 @@ def test_a_batch_is_refused(tmp_path):
         ("measurements.txt", "# step z1\n99 1\n", "whole numbers"),
         ("measurements.txt", "# step z1\n3 1\n2 1\n", "sort"),
         ("landmarks.txt", "# id x y\n1 2\n", "line 2"),
-        ("bounds.txt", None, "no such file"),
     ],
 )
 def test_a_damaged_folder_is_named(tmp_path, name, text, message):
     pf.save_log(make_log(), tmp_path)
-    if text is None:
-        (tmp_path / name).unlink()
-    else:
-        (tmp_path / name).write_text(text)
+    (tmp_path / name).write_text(text)
     with pytest.raises(pf.DataError, match=message):
         pf.read_log(tmp_path)

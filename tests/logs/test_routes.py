@@ -60,7 +60,7 @@ def test_pure_pursuit_of_a_batch_is_that_of_its_robots():
 def test_bad_parts_are_named():
     with pytest.raises(pf.ParameterError, match="way-points"):
         pf.PurePursuit([[0, 0, 1], [0, 0, 1]], 1, 0.1)
-    with pytest.raises(pf.ShapeError, match="points"):
+    with pytest.raises(pf.ParameterError, match="way-points"):
         pf.PurePursuit([[0], [0]], 1, 0.1)
     with pytest.raises(pf.ParameterError, match="last"):
         pf.commands([(1, 0, -1)], 0.1)

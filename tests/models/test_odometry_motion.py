@@ -94,7 +94,7 @@ def test_shapes_and_a_control_for_each_filter():
 def test_no_motion_has_no_density_and_bad_alphas_are_named():
     with pytest.raises(pf.ParameterError, match="no density"):
         NOISY.log_density(np.ones(3), np.zeros(3), np.zeros(3))
-    with pytest.raises(pf.ShapeError, match="4 numbers"):
+    with pytest.raises(pf.ShapeError, match=r"alpha must have shape \(4,\)"):
         pf.OdometryMotion((0.1, 0.1))  # type: ignore[arg-type]
     with pytest.raises(pf.ParameterError, match="alpha"):
         pf.OdometryMotion((0.1, 0.1, -0.1, 0.1))

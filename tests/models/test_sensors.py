@@ -90,7 +90,11 @@ def test_position_fixes_have_the_stated_covariance():
 @pytest.mark.parametrize(
     "make, error, match",
     [
-        (lambda: pf.Position(sigma=(1.0, 2.0, 3.0)), pf.ShapeError, "one number or two"),
+        (
+            lambda: pf.Position(sigma=(1.0, 2.0, 3.0)),
+            pf.ShapeError,
+            r"sigma must have shape \(2,\), got \(3,\)",
+        ),
         (lambda: pf.Position(sigma=0.0), pf.ParameterError, "no density"),
         (lambda: pf.Compass(-0.1), pf.ParameterError, "sigma_theta"),
         (lambda: pf.Compass(0.1, nu=0.0), pf.ParameterError, "nu"),

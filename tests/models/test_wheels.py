@@ -97,7 +97,7 @@ def test_shapes_and_equivariance(motion, u):
 
 
 def test_bad_vehicles_and_bad_steering_are_named():
-    with pytest.raises(pf.ParameterError, match="L must be > 0"):
+    with pytest.raises(pf.ParameterError, match="L must be finite and > 0"):
         pf.DifferentialDrive(r=0.1, L=0.0)
     with pytest.raises(pf.ParameterError, match="sigma_omega"):
         pf.DifferentialDrive(r=0.1, L=0.5, sigma_omega=-1.0)

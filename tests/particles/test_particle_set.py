@@ -143,5 +143,5 @@ def test_a_batch_of_one_prior_is_a_single_one():
 
 
 def test_a_set_without_particles_is_refused():
-    with pytest.raises(pf.ShapeError, match="empty"):
+    with pytest.raises(pf.ShapeError, match="M >= 1"):
         pf.Particles(np.zeros((3, 0)), np.zeros(0))

@@ -46,7 +46,7 @@ def test_turning_the_map_turns_the_field():
 def test_bad_input_is_named():
     with pytest.raises(pf.ShapeError, match="rows, columns"):
         pf.distance_field([True, False])
-    with pytest.raises(pf.ParameterError, match="booleans"):
+    with pytest.raises(pf.ShapeError, match="booleans"):
         pf.distance_field([[0.1, 0.9]])
     with pytest.raises(pf.ParameterError, match="resolution"):
         pf.distance_field([[True]], resolution=-1.0)

@@ -54,22 +54,25 @@ def test_only_stretches_can_be_cut(part):
 @pytest.mark.parametrize(
     "changes, words",
     [
-        (dict(u=np.zeros((2, 4))), "5 times but 4 columns of u"),
-        (dict(z=[np.empty((3, 0))] * 6), "5 times but 6 columns of z"),
-        (dict(truth=np.zeros((3, 2))), "5 times but 2 columns of truth"),
-        (dict(scored=np.ones(3, bool)), "5 times but 3 columns of scored"),
+        (dict(u=np.zeros((2, 4))), r"u must have shape \(n, 5, ...\), n >= 1, got \(2, 4\)"),
+        (dict(z=[np.empty((3, 0))] * 6), "list of 5 arrays.*got 6"),
+        (
+            dict(truth=np.zeros((3, 2))),
+            r"truth must have shape \(D, 5, ...\), D >= 1, got \(3, 2\)",
+        ),
+        (dict(scored=np.ones(3, bool)), "5 times but 3 of scored"),
         (dict(t=[0, 1, 3, 2, 4]), "backwards after t = 3"),
         (dict(t=[0, 1, np.nan, 2, 4]), "t must be finite, got nan"),
-        (dict(t=np.zeros((5, 1))), r"needs t \(T,\)"),
-        (dict(u=np.zeros(5)), r"needs t \(T,\) and u \(n, T\)"),
+        (dict(t=np.zeros((5, 1))), r"t must have shape \(5,\), got \(5, 1\)"),
+        (dict(u=np.zeros(5)), r"u must have shape \(n, 5, ...\)"),
         (dict(u="fast"), "u must be real numbers, got 'fast'"),
-        (dict(truth=np.zeros(5)), r"truth must have shape \(3, T\)"),
-        (dict(z=[np.zeros(3)] * 5), r"each z must be an array \(n, K\).* at step 0"),
+        (dict(truth=np.zeros(5)), r"truth must have shape \(D, 5, ...\)"),
+        (dict(z=[np.zeros(3)] * 5), "one column for each measurement"),
         (dict(start=[0, np.inf, 0]), "start must be finite, got inf"),
     ],
 )
 def test_parts_that_do_not_fit_are_named(changes, words):
-    with pytest.raises(pf.DataError, match=words):
+    with pytest.raises((pf.DataError, pf.ShapeError), match=words):
         make(**changes)
 
 

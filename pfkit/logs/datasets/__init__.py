@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from pfkit.errors import DataError, as_path
+from pfkit.errors import DataError, Wanted
 from pfkit.logs.datasets.labyrinth import is_labyrinth, read_labyrinth
 from pfkit.logs.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
 from pfkit.logs.datasets.plaza import is_plaza, read_plaza
@@ -108,7 +108,7 @@ def find_folder(name: str | Path | None, is_layout: Callable[[Path], bool] | Non
         If there is none; says where to get a log and how to lay it out.
     """
     fits = is_layout or (lambda folder: any(layout.fits(folder) for layout in LAYOUTS.values()))
-    if name is not None and as_path("folder", name).exists():
+    if name is not None and Path(name).exists():
         return Path(name)
     data = Path(__file__).parents[3] / "data"
     roots = [Path(os.environ["PFKIT_DATA"])] if os.environ.get("PFKIT_DATA") else []
@@ -218,7 +218,7 @@ def load_log(
         robot,
         drop_unknown,
         need_truth,
-        None if map is None else as_path("map", map),
+        None if map is None else Path(map),
         odometry,
         scan,
         truth,
