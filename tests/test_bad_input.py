@@ -601,6 +601,15 @@ TABLE |= {
         ),
     ),
     "wilson_interval": (pf.wilson_interval, dict(successes=(1, "seed"), n=n, level=(0.9, "level"))),
+    "t_quantile": (pf.t_quantile, dict(level=(0.9, "level"), freedom=n)),
+    "t_interval": (
+        pf.t_interval,
+        dict(x=([1.0, 2.0, 4.0], "scores of three"), level=(0.9, "level")),
+    ),
+    "cluster_interval": (
+        pf.cluster_interval,
+        dict(x=([1.0, 2.0, 4.0], "scores of three"), clusters=(list("aab"), "names of worlds")),
+    ),
     "paired": (
         pf.paired,
         dict(
@@ -676,6 +685,8 @@ TABLE |= {
     ),
 }
 BAD |= {
+    "scores of three": [([1.0, NAN, 2.0], "nan"), ([], "0"), ([1.0], "1"), ("a", "a")],
+    "names of worlds": [(list("aaa"), "1"), (list("ab"), "(2,)"), (list("aabb"), "(4,)")],
     "iterations": [(2.5, "2.5"), ("many", "many")],
     "size": [(0, "0"), ((2, 0), "0"), (2.5, "2.5"), ("many", "many")],
     "draws": [(-1, "-1"), (2.5, "2.5"), ("many", "many")],
@@ -766,7 +777,6 @@ PLAIN = {
     "survival_probability": "scheme",
     "Range": "world",
     "VelocityMotion.mean": "u",
-    "OdometryMotion.mean": "u",
     "offspring_z": "w",
     "fit_beams": "iterations",
     "shift_kernel": "u",

@@ -122,7 +122,7 @@ def cluster_interval(x: ArrayLike, clusters: ArrayLike, level: float = 0.95) -> 
     """
     names, of = np.unique(clusters, return_inverse=True)
     x = require_array("x", x, (of.size,))
-    mean, G = float(np.mean(x)), names.size
+    G, mean = require_count("clusters (worlds, films, maps)", names.size, 2), float(np.mean(x))
     sums = np.bincount(of, x - mean) / x.size
     half = t_quantile(level, G - 1) * math.sqrt(G / (G - 1) * float(np.sum(sums**2)))
     return Interval(mean, mean - half, mean + half)

@@ -56,7 +56,7 @@ class WheelGeometry:
 
     def arcs(self, turns: ArrayLike) -> tuple[Array, Array]:
         """Distance (m) and turn (rad) of the body for turns (2, ...) of left and right wheel."""
-        left, right = require_array("turns", turns, (2, ...))
+        left, right = require_array("turns", turns, (2, "T", ...))
         left, right = self.r_l * left, self.r_r * right
         return (left + right) / 2, (right - left) / self.L
 
@@ -80,7 +80,7 @@ def encoder_odometry(turns: ArrayLike, wheels: WheelGeometry, start: ArrayLike =
     ShapeError, ParameterError
         If there are not two wheels, or a number is not finite.
     """
-    distance, turn = wheels.arcs(require_array("turns", turns, (2, "T", ...)))
+    distance, turn = wheels.arcs(turns)
     heading = np.cumsum(turn, axis=0)
     direction = heading - turn / 2
     chord = distance * np.sinc(turn / (2 * np.pi))

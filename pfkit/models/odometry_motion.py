@@ -96,8 +96,7 @@ class OdometryMotion:
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free turn, drive, turn: pose (3, ...), u (3,) -> pose (3, ...)."""
-        pose = require_array("pose", pose, (3, ...))
-        return self._move(pose, *np.asarray(u))
+        return self._move(require_array("pose", pose, (3, ...)), *require_array("u", u, (3, ...)))
 
     def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
         """Each particle repeats the motion with errors of its own: (3, ...), (3,) -> (3, ...)."""

@@ -54,8 +54,12 @@ def test_one_run_a_cluster_is_students_interval():
         assert interval.half == pytest.approx(by_hand)
 
 
-@pytest.mark.parametrize("x, clusters", [([1.0], ["a"]), ([1.0, 2.0], ["a", "a"]),
-                                         ([1.0, 2.0], ["a", "b", "c"])])  # fmt: skip
+@pytest.mark.parametrize("x, clusters", [([1.0], ["a"]), ([1.0, 2.0], ["a", "a"])])
 def test_one_world_cannot_say_how_worlds_differ(x, clusters):
-    with pytest.raises(pf.ShapeError, match="two clusters"):
+    with pytest.raises(pf.ParameterError, match=r"clusters .* whole number >= 2, got 1"):
         pf.cluster_interval(x, clusters)
+
+
+def test_each_run_belongs_to_a_cluster():
+    with pytest.raises(pf.ShapeError, match=r"x must have shape \(3,\), got \(2,\)"):
+        pf.cluster_interval([1.0, 2.0], ["a", "b", "c"])
