@@ -119,7 +119,7 @@ def require_array(
         return array
     obeys, remedy = RULES[rule]
     good = obeys(array)
-    if not good.all():
+    if np.count_nonzero(good) < good.size:  # all() in a third of its time
         raise error(f"{name} must be {rule}, got {array[~good].flat[0]}; {remedy}")
     return array
 

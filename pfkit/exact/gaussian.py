@@ -130,7 +130,7 @@ def gaussian_predict(
     -----
     Source: Probabilistic Robotics, Tables 3.3, 3.4, 7.2 and 7.4, with noise in the control.
     """
-    u, angles = np.asarray(u), angles_of(bel.mean)
+    u, angles = np.asarray(u, dtype=float), angles_of(bel.mean)
     mean, Sigma, f = _augment(bel, lambda state, rng: motion.sample(state, u, rng))
     y, Y, cross = transform(f, mean, Sigma, angles)
     return Gaussian(wrap_rows(y, angles), Y), cross[: bel.mean.size]

@@ -70,7 +70,7 @@ def predict_by_convolution(
     adds at most a quarter of a cell squared to its variance. O(s N log N). The FFT rounds:
     what falls below 1e-15 of the largest cell is set to zero.
     """
-    u = np.asarray(u)
+    u = np.asarray(u, dtype=float)
     moves = motion.sample(np.zeros((3, require_count("draws", draws))), u, rng)
     if not moves.any():
         return bel
@@ -139,7 +139,7 @@ def predict_by_transport(
     -----
     Source: Probabilistic Robotics, Table 8.1, its integral done by sampling. O(K N).
     """
-    u, draws = np.asarray(u), require_count("draws", draws)
+    u, draws = np.asarray(u, dtype=float), require_count("draws", draws)
     occupied = np.flatnonzero(bel.p)
     mass, centre = bel.p.ravel()[occupied] / draws, bel.poses.reshape(3, -1)[:, occupied]
     p = np.zeros(bel.p.size)

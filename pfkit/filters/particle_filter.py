@@ -80,7 +80,7 @@ def predict(
     -----
     Source: Probabilistic Robotics, Table 4.3, line 4.
     """
-    moved = motion.sample(bel.state, np.asarray(u), rng)
+    moved = motion.sample(bel.state, np.asarray(u, dtype=float), rng)
     return Particles.trusted(require_array("the moved state", moved, bel.state.shape), bel.log_w)
 
 
@@ -118,7 +118,7 @@ def update(
     """
     if how_many(z) == 0:
         return bel, np.zeros(bel.log_w.shape[:-1])[()]
-    log_p = sensor.log_likelihood(np.asarray(z), bel.state)
+    log_p = sensor.log_likelihood(np.asarray(z, dtype=float), bel.state)
     log_likelihood = require_array(
         "the log-likelihood of each particle", log_p, bel.log_w.shape, rule=None
     )

@@ -83,7 +83,7 @@ def tempered_update(
     stages = np.zeros(filters, dtype=np.int64)
     if how_many(z) == 0:
         return bel, stages
-    z, left = np.asarray(z), np.ones(filters)
+    z, left = np.asarray(z, dtype=float), np.ones(filters)
     while True:
         log_p = sensor.log_likelihood(z, bel.state)
         step = _largest_step(bel.log_w, log_p, keep * bel.M, left)

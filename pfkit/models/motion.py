@@ -184,14 +184,14 @@ class VelocityMotion:
 
     def variances(self, u: ArrayLike) -> Array:
         """Variances (3, ...) of v, omega and gamma for a control u (3, ...)."""
-        v, omega, _ = np.asarray(u)
+        v, omega, _ = np.asarray(u, dtype=float)
         a1, a2, a3, a4, a5, a6 = self.alpha
         v2, omega2 = v * v, omega * omega
         return np.array((a1 * v2 + a2 * omega2, a3 * v2 + a4 * omega2, a5 * v2 + a6 * omega2))
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free arc: pose (3, ...), u (3,) -> pose (3, ...)."""
-        v, omega, dt = np.asarray(u)
+        v, omega, dt = np.asarray(u, dtype=float)
         return drive_arc(pose, v * dt, omega * dt)
 
     def sample(self, pose: Array, u: ArrayLike, rng: np.random.Generator) -> Array:
@@ -237,7 +237,7 @@ class VelocityMotion:
         Source: Probabilistic Robotics, Table 5.1, which leaves the Jacobian out. Arcs of more
         than a full turn in one step are not counted. The density has a pole at c = 0.
         """
-        v, omega, dt = np.asarray(u)
+        v, omega, dt = np.asarray(u, dtype=float)
         require_array("dt", dt, rule="finite and > 0")
         var_v, var_omega, var_gamma = self.variances(u)
         branches = []

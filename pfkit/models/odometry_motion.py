@@ -87,7 +87,7 @@ class OdometryMotion:
 
     def variances(self, u: ArrayLike) -> Array:
         """Variances (3, ...) of rot1, trans and rot2 for a control u (3, ...)."""
-        rot1, trans, rot2 = np.asarray(u)
+        rot1, trans, rot2 = np.asarray(u, dtype=float)
         a1, a2, a3, a4 = self.alpha
         rot1, trans, rot2 = rot1 * rot1, trans * trans, rot2 * rot2
         return np.stack(
@@ -134,7 +134,7 @@ class OdometryMotion:
         Source: Probabilistic Robotics, Table 5.5, which leaves the Jacobian and the second
         move out. The density has a pole where the robot ends up where it was.
         """
-        u = np.asarray(u)
+        u = np.asarray(u, dtype=float)
         var1, var_t, var2 = self.variances(u)
         _, _, turn = between(pose0, pose1)
         first, distance, _ = odometry_control(pose0, pose1)

@@ -72,7 +72,7 @@ class FixedTarget:
 
 def _ahead(state: ArrayLike, theta: float | Array, u: ArrayLike) -> Array:
     """Positions moved by v dt along theta; the rest of the state unchanged."""
-    v, _, dt = np.asarray(u)
+    v, _, dt = np.asarray(u, dtype=float)
     moved = np.array(state, dtype=float)
     moved[0] += v * dt * np.cos(theta)
     moved[1] += v * dt * np.sin(theta)
@@ -127,6 +127,6 @@ class CircleTarget(FixedTarget):
     def mean(self, state: ArrayLike, u: ArrayLike) -> Array:
         state = require_array("state", state, (3, ...))
         moved = _ahead(state, state[2], u)
-        _, omega, dt = np.asarray(u)
+        _, omega, dt = np.asarray(u, dtype=float)
         moved[2] = wrap(moved[2] + omega * dt)
         return moved

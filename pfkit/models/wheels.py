@@ -77,7 +77,7 @@ class DifferentialDrive:
 
     def mean(self, pose: Array, u: ArrayLike) -> Array:
         """Noise-free arc: pose (3, ...), u (3,) -> pose (3, ...)."""
-        left, right, dt = np.asarray(u)
+        left, right, dt = np.asarray(u, dtype=float)
         v, omega = self.body_speed(left, right)
         return drive_arc(pose, v * dt, omega * dt)
 
@@ -146,7 +146,7 @@ class Bicycle:
 
     @staticmethod
     def _control(u: ArrayLike) -> Array:
-        u = np.asarray(u)
+        u = np.asarray(u, dtype=float)
         if not (np.abs(u[1]) < np.pi / 2).all():
             raise ParameterError(
                 f"the steering angle must be within a quarter turn, got {np.max(np.abs(u[1]))} "

@@ -27,6 +27,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
@@ -84,7 +85,11 @@ class Particles:
 
     @property
     def w(self) -> NDArray[np.float64]:
-        """Weights (M,) or (B, M), summing to one over the last axis."""
+        """Weights (M,) or (B, M), summing to one over the last axis; a copy, yours to change."""
+        return self._w.copy()
+
+    @cached_property
+    def _w(self) -> NDArray[np.float64]:
         return np.exp(self.log_w)
 
     @property
@@ -95,8 +100,7 @@ class Particles:
     @property
     def ess(self) -> NDArray[np.float64] | np.float64:
         """Effective sample size, a number (or (B,) for a batch) between 1 and M."""
-        w = self.w
-        return 1.0 / np.einsum("...m,...m->...", w, w)
+        return 1.0 / np.einsum("...m,...m->...", self._w, self._w)
 
     def __repr__(self) -> str:
         shape = " x ".join(str(n) for n in self.log_w.shape)

@@ -53,6 +53,7 @@ class LandmarkMap:
     ids: NDArray[np.int64] = None  # type: ignore[assignment]
     bounds: tuple[float, float, float, float] = None  # type: ignore[assignment]
     _order: NDArray[np.int64] = field(init=False, repr=False)
+    _sorted: NDArray[np.float64] = field(init=False, repr=False)
 
     def __post_init__(self) -> None:
         positions = require_array("positions", self.positions, (2, "L"))
@@ -68,7 +69,9 @@ class LandmarkMap:
         object.__setattr__(self, "positions", positions)
         object.__setattr__(self, "ids", ids)
         object.__setattr__(self, "bounds", (float(x0), float(x1), float(y0), float(y1)))
-        object.__setattr__(self, "_order", np.argsort(ids))
+        order = np.argsort(ids)
+        object.__setattr__(self, "_order", np.append(order, -1))
+        object.__setattr__(self, "_sorted", np.append(ids[order], np.nan))
 
     def __len__(self) -> int:
         return self.ids.size
@@ -97,15 +100,14 @@ class LandmarkMap:
     def index(self, ids: ArrayLike) -> NDArray[np.int64]:
         """Where landmarks stand in the map's own order, by their ids; else as `locate`."""
         wanted = as_numbers("landmark ids", ids, UnknownLandmarkError)
-        at = np.minimum(np.searchsorted(self.ids, wanted, sorter=self._order), len(self) - 1)
-        index = self._order[at]
-        wrong = self.ids[index] != wanted
+        at = self._sorted.searchsorted(wanted)  # NaN at the end is found last, and equals nothing
+        wrong = self._sorted[at] != wanted
         if wrong.any():
             raise UnknownLandmarkError(
                 f"landmark {wanted[wrong].flat[0]:g} is not in the map, which has "
                 f"{self.ids.tolist()}; drop the measurement or add the landmark"
             )
-        return index
+        return self._order[at]
 
     def sample_poses(self, shape: Shape, rng: np.random.Generator) -> NDArray[np.float64]:
         """Draw poses uniformly over the bounds, heading uniform on the circle.
