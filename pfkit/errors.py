@@ -24,7 +24,7 @@ from typing import Any
 import numpy as np
 
 Shape = int | tuple[int, ...]
-Wanted = tuple[Any, ...]
+Pattern = tuple[Any, ...]
 
 
 class PfkitError(ValueError):
@@ -80,7 +80,7 @@ RULES: dict[str, tuple[Callable[[np.ndarray], Any], str]] = {
 
 
 @lru_cache(maxsize=1024)
-def _fits(shape: tuple[int, ...], wanted: Wanted) -> bool:
+def _fits(shape: tuple[int, ...], wanted: Pattern) -> bool:
     """Whether a shape is the wanted one: a number is a length, a name any length but 0."""
     if wanted[:1] == (...,):
         return wanted == (...,) or _fits(shape[::-1], wanted[::-1])
@@ -90,7 +90,7 @@ def _fits(shape: tuple[int, ...], wanted: Wanted) -> bool:
     return len(shape) == len(wanted) and all(n == w or (n > 0 and type(w) is str) for n, w in pairs)
 
 
-def _written(wanted: Wanted) -> str:
+def _written(wanted: Pattern) -> str:
     """A wanted shape as in the docstrings: ``(3, ...)``, or ``(2, L), L >= 1``."""
     words = ["..." if w is ... else str(w) for w in wanted]
     least = [f", {w} >= 1" for w in wanted if isinstance(w, str)]
@@ -100,7 +100,7 @@ def _written(wanted: Wanted) -> str:
 def require_array(
     name: str,
     value: Any,
-    shape: Wanted = (...,),
+    shape: Pattern = (...,),
     rule: str | None = "finite",
     error: type[PfkitError] = ParameterError,
 ) -> np.ndarray:

@@ -25,8 +25,8 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import (
     DegenerateWeightsError,
     ParameterError,
+    Pattern,
     ShapeError,
-    Wanted,
     require_array,
     require_number,
 )
@@ -186,7 +186,7 @@ def door_likelihood(doors: ArrayLike, z: bool, hit: float, false: float) -> Arra
     return p_door if z else 1 - p_door
 
 
-def _probabilities(name: str, value: ArrayLike, shape: Wanted = (..., "n")) -> Array:
+def _probabilities(name: str, value: ArrayLike, shape: Pattern = (..., "n")) -> Array:
     """Check that the last axis holds probabilities that sum to one."""
     p = require_array(name, value, shape, "finite and >= 0")
     if not np.allclose(p.sum(axis=-1), 1.0, atol=1e-9):

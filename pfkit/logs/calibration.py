@@ -295,7 +295,7 @@ def _windows(log: Log) -> tuple[NDArray[np.int64], NDArray[np.int64]]:
     """Pairs of steps one window apart, at both of which the truth is known."""
     t0 = np.arange(log.t[0], log.t[-1] - WINDOW, STRIDE)
     i, j = np.searchsorted(log.t, t0), np.searchsorted(log.t, t0 + WINDOW)
-    good = np.isfinite(log.truth[:2, i] + log.truth[:2, j]).all(axis=0)
+    good = np.isfinite(log.truth[:2, i] + log.truth[:2, j]).all(axis=0)  # type: ignore[index]
     i, j = i[good], j[good]
     way = np.hypot(*(log.truth[:2, j] - log.truth[:2, i])) if i.size else np.zeros(0)  # type: ignore[index]
     if way.sum() * STRIDE / WINDOW < 1.0:

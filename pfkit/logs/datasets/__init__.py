@@ -18,7 +18,7 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import NamedTuple
 
-from pfkit.errors import DataError, Wanted
+from pfkit.errors import DataError
 from pfkit.logs.datasets.labyrinth import is_labyrinth, read_labyrinth
 from pfkit.logs.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
 from pfkit.logs.datasets.plaza import is_plaza, read_plaza
