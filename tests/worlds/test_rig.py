@@ -21,7 +21,7 @@ def test_rows_without_names_lack_the_landmark():
     [
         (dict(sensor="sonar"), "sensor must be one of range-bearing, .* got 'sonar'"),
         (dict(sensor="laser", odometry="steps"), "odometry must be one of speeds"),
-        (dict(sensor="laser", mount=(0, 0)), rr"mount must have shape \(3,\)"),
+        (dict(sensor="laser", mount=(0, 0)), r"mount must have shape \(3,\)"),
         (dict(sensor="laser", mount=(0, 0, np.inf)), "inf"),
         (dict(sensor="laser", r_max=0.0), "r_max"),
     ],
