@@ -38,6 +38,7 @@ LIMITS = {
     "display equations": (10, 20),
     "figures": (6, 8),
     "explorables": (1, 1),
+    "films": (0, 6),
     "items": (8, 40),
     "item types": (4, 6),
     "predictions": (2, 10),
@@ -72,13 +73,16 @@ def measure(notebook, items):
     read = re.sub(r"<!--.*?-->|(?<=\])\([^()\s]*\)", "", everything, flags=re.S)  # no targets
     used = {i for c in code for _, i in LAB_CALL.findall(text(c)) if i in items}
     kinds = [type(items[i]).__name__ for i in used]
+    moving = re.findall(r"^[`:]{3,}\{explorable\}.*?^[`:]{3,}$", everything, flags=re.M | re.S)
+    films = [directive for directive in moving if "\n:caption:" in directive]
     displayed = re.findall(r"\$\$.+?\$\$|```\{math\}", everything, flags=re.S)
     return {
         "words": len(re.findall(r"[A-Za-z']+", read)),
         "code cells": sum(not is_lab_cell(c) for c in code),
         "display equations": len(displayed),
         "figures": sum(map(has_figure, code)),
-        "explorables": len(re.findall(r"^[`:]{3,}\{explorable\}", everything, flags=re.M)),
+        "explorables": len(moving) - len(films),
+        "films": len(films),
         "items": len(used),
         "item types": len(set(kinds)),
         "predictions": kinds.count("Prediction"),
