@@ -14,7 +14,9 @@ a false measurement.
 
 Scans of a laser need thinning first. Thirty beams tell nearly as much as three hundred, and are
 thirty witnesses, not three hundred; a scan from the same spot as the last one tells nothing new at
-all, and a filter that believes it again and again becomes certain of whatever it believed.
+all, and a filter that believes it again and again becomes certain of whatever it believed. Beams
+are cast for every particle, which is slow; so a laser's global start goes on with fewer particles,
+those of a known start, as soon as the cloud is narrow.
 
 In a symmetric world no single answer is honest. The track then comes with `Hypotheses`: heaps of
 particles with the share of the weight of each, wherever there is more than one.
@@ -170,8 +172,10 @@ def localise(
     sensor, staged = settings.sensor, math.inf
     if (everywhere or recover) and not plain:
         sensor, staged = _with_outliers(log, sensor), settings.limit
+    few = settings.M[0] if looked is not log and M > settings.M[0] else M
+    world = log.world if recover else None
     estimate, Sigma, found = _filter(
-        short, bel, sensor, rng, staged, settings.limit, log.world if recover else None, watch
+        short, bel, sensor, rng, staged, settings.limit, few, world, watch
     )
     seconds = time.perf_counter() - began
     estimate, sd = fill_in(log, settings.drift, np.append(0, steps + 1), estimate, Sigma)
@@ -241,6 +245,7 @@ def _filter(
     rng: np.random.Generator,
     staged: float,
     limit: float,
+    few: int,
     world: object | None,
     watch: Watch | None,
 ) -> tuple[Array, Array, Hypotheses]:
@@ -262,6 +267,8 @@ def _filter(
         if z.shape[1]:
             share = memory.share * np.ones(bel.log_w.shape[:-1])
             bel = resample(bel, systematic, rng, where=(bel.ess < 0.5 * bel.M) | (share > 0))
+            if few < bel.M and (spreads[-1][0, 0] + spreads[-1][1, 1] < limit**2 / 4).all():
+                bel = resample(bel, systematic, rng, n=few)
             if world is not None:
                 bel, _ = inject(bel, share, world.sample_poses, rng)  # type: ignore[attr-defined]
         if watch is not None:

@@ -19,6 +19,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from pfkit.errors import DataError
+from pfkit.logs.datasets.carmen import carmen_file, read_carmen
 from pfkit.logs.datasets.labyrinth import is_labyrinth, read_labyrinth
 from pfkit.logs.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
 from pfkit.logs.datasets.plaza import is_plaza, read_plaza
@@ -85,11 +86,20 @@ def _labyrinth(folder: Path, wanted: Wanted) -> Log:
     return read_labyrinth(folder, f"Labyrinth, {folder.name}", wanted.need_truth)
 
 
+def _carmen(folder: Path, wanted: Wanted) -> Log:
+    return read_carmen(folder, f"CARMEN, {folder.name}", wanted.need_truth, wanted.map)
+
+
 LAYOUTS = {
     "saved": Layout(is_saved, _saved, "steps.txt and measurements.txt, as save_log writes them"),
     "MRCLAM": Layout(is_mrclam, _mrclam, "*_Odometry.dat, *_Measurement.dat, *Barcodes.dat"),
     "Plaza": Layout(is_plaza, _plaza, "odometry.txt, ranges.txt and beacons.txt"),
     "Labyrinth": Layout(is_labyrinth, _labyrinth, "*.txt with lines range2 and odom2diff"),
+    "CARMEN": Layout(
+        lambda folder: carmen_file(folder) is not None,
+        _carmen,
+        "*.log with lines FLASER or ROBOTLASER1, and a map (.yaml)",
+    ),
 }
 
 
