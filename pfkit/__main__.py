@@ -29,6 +29,7 @@ from pfkit.judging.localise import (
 from pfkit.judging.settings import rig_of
 from pfkit.logs.calibration import Calibration
 from pfkit.logs.datasets import LAYOUTS, load_log
+from pfkit.logs.datasets.describe import describe
 from pfkit.logs.odometry import Drift
 from pfkit.worlds.log import Log
 from pfkit.worlds.maps import LandmarkMap
@@ -50,6 +51,13 @@ def parser() -> argparse.ArgumentParser:
     top = OneLineParser(prog="python -m pfkit", description="Particle filters for robots.")
     commands = top.add_subparsers(dest="command", required=True)
     _add_localise(commands)
+    draft = commands.add_parser(
+        "describe",
+        help="draft a description of a folder of tables",
+        description="Look at the tables of a folder and write log.yaml, a first guess at what "
+        "they hold. Read it before you use it.",
+    )
+    draft.add_argument("folder", type=Path)
     return top
 
 
@@ -96,7 +104,10 @@ def main(argv: Sequence[str] | None = None) -> int:
     """Run the command; returns the exit code: 0, or 2 after one line about bad input."""
     args = parser().parse_args(argv)
     try:
-        run(args)
+        if args.command == "describe":
+            print(describe(args.folder))
+        else:
+            run(args)
     except (PfkitError, OSError) as error:
         print(f"pfkit: {' '.join(str(error).split())}", file=sys.stderr)
         return 2

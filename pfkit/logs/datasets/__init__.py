@@ -20,6 +20,7 @@ from typing import NamedTuple
 
 from pfkit.errors import DataError
 from pfkit.logs.datasets.carmen import carmen_file, read_carmen
+from pfkit.logs.datasets.described import is_described, read_described
 from pfkit.logs.datasets.labyrinth import is_labyrinth, read_labyrinth
 from pfkit.logs.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
 from pfkit.logs.datasets.plaza import is_plaza, read_plaza
@@ -90,7 +91,13 @@ def _carmen(folder: Path, wanted: Wanted) -> Log:
     return read_carmen(folder, f"CARMEN, {folder.name}", wanted.need_truth, wanted.map)
 
 
+def _described(folder: Path, wanted: Wanted) -> Log:
+    source = f"described, {folder.name}"
+    return read_described(folder, source, wanted.drop_unknown, wanted.need_truth, wanted.map)
+
+
 LAYOUTS = {
+    "described": Layout(is_described, _described, "log.yaml, and the tables that it names"),
     "saved": Layout(is_saved, _saved, "steps.txt and measurements.txt, as save_log writes them"),
     "MRCLAM": Layout(is_mrclam, _mrclam, "*_Odometry.dat, *_Measurement.dat, *Barcodes.dat"),
     "Plaza": Layout(is_plaza, _plaza, "odometry.txt, ranges.txt and beacons.txt"),
@@ -252,5 +259,6 @@ def _unknown(folder: Path) -> str:
     needs = "; ".join(f"{name}: {layout.needs}" for name, layout in LAYOUTS.items())
     return (
         f"{folder}: no log of a known layout in it. There is {there or 'nothing'}. "
-        f"Known are {needs}"
+        f"Known are {needs}. If these are tables of numbers, 'pfkit describe {folder}' drafts "
+        "a log.yaml"
     )

@@ -134,7 +134,9 @@ def _take(said: Messages, kind: str, words: list[str]) -> None:
         start, step, r_max, n = float(words[1]), float(words[3]), float(words[4]), int(words[7])
         said.r_max = r_max
         remissions = int(words[8 + n])
-        _scan(said, words, 8, n, start + step * np.arange(n), 9 + n + remissions, 5)
+        _scan(
+            said, words, 8, n, np.array(start + step * np.arange(n), float), 9 + n + remissions, 5
+        )
 
 
 def _scan(
@@ -155,7 +157,7 @@ def _scan(
 def _half_circle(n: int) -> Array:
     """Directions of n beams over the front half circle: an even number leaves the last one out."""
     step = np.pi / (n - 1 if n % 2 else n) if n > 1 else 0.0
-    return -np.pi / 2 + step * np.arange(n)
+    return np.asarray(-np.pi / 2 + step * np.arange(n), dtype=np.float64)
 
 
 def _finite(words: list[str]) -> list[float]:

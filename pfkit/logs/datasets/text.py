@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import gzip
 import io
+import re
 import warnings
 import zlib
 from collections.abc import Sequence
@@ -92,7 +93,7 @@ def in_order(path: Path, table: Array, names: Array | None = None) -> tuple[Arra
     """
     back = jump_back(table[0], names)
     if back is not None:
-        refuse(path, np.arange(table.shape[1]) == back, table[0], _jump(table[0], back))
+        raise DataError(f"{_place(path, back)}: {_jump(table[0], back)}")
     order = np.argsort(table[0], kind="stable")
     moved = int((np.maximum.accumulate(table[0]) > table[0]).sum())
     notes = (
@@ -159,9 +160,16 @@ def refuse(path: Path, wrong: NDArray[np.bool_], values: Array, reason: str) -> 
     """
     rows = np.flatnonzero(wrong)
     if rows.size:
-        lines = enumerate(read_text(existing(path)).splitlines(), start=1)
-        line = [number for number, text in lines if _words(text)][rows[0]]
-        raise DataError(f"{path}, line {line}: {reason.format(values[rows[0]])}")
+        raise DataError(f"{_place(path, int(rows[0]))}: {reason.format(values[rows[0]])}")
+
+
+def _place(path: Path, row: int) -> str:
+    """The file and the line of a row of numbers; of a folder, or a file of messages, the row."""
+    lines: list[int] = []
+    if _find(path) is not None:
+        text = read_text(existing(path)).splitlines()
+        lines = [n for n, line in enumerate(text, start=1) if re.match(r"\s*[-+.]?\d", line)]
+    return f"{path}, line {lines[row]}" if row < len(lines) else f"{path}, row {row + 1}"
 
 
 def identities(path: Path, name: str, values: Array) -> NDArray[np.int64]:
