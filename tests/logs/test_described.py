@@ -268,5 +268,5 @@ def test_a_laser_in_a_wide_table(tmp_path, capsys):
     np.testing.assert_allclose(log.z[7], drive.z[7], atol=1e-6)
     assert log.rig == pf.Rig("laser", "increments", r_max=8.0)
     (tmp_path / "log.yaml").write_text(text.replace(", max: 8", ""))
-    with pytest.raises(pf.DataError, match="a laser needs beams: .* max: 8"):
+    with pytest.raises(pf.DataError, match=r"a laser needs beams: .* max: 8"):
         pf.load_log(tmp_path, need_truth=False)

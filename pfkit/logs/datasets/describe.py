@@ -2,8 +2,8 @@
 
 Names of columns say most: ``t``, ``vel``, ``range_mm``, ``heading [deg]``. Where they say no unit,
 the size of the numbers does: a bearing of 170 is no radian, a stamp of 1.7e18 counts nanoseconds.
-What each file is follows from what it holds and from its own name. All of it is a guess; each line that
-is one says so, and what is missing is asked for.
+What each file is follows from what it holds and from its own name. All of it is a guess, and the
+draft says so; what is missing is asked for.
 """
 
 from __future__ import annotations
