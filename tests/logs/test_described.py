@@ -191,8 +191,8 @@ BAD = {
     "no measurements": (("measurements:", "seen:"), "'seen' is none of"),
     "no file": (("file: seen.csv", "file: other.csv"), "other.csv: no such file"),
     "no YAML": (("frame: enu", "frame: [enu"), "no sound YAML"),
-    "bad bounds": (("frame: enu", "frame: enu\nbounds: [1, 2]"), "bounds must be"),
-    "bad mount": (("frame: enu", "frame: enu\nmount: [1, 2]"), "mount must have its 3"),
+    "bad bounds": (("frame: enu", "frame: enu\nbounds: [1, 2]"), "bounds must have shape"),
+    "bad mount": (("frame: enu", "frame: enu\nmount: [1, 2]"), "mount must have"),
 }
 
 
