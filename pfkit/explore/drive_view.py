@@ -64,7 +64,7 @@ def _landmarks(s: Scene, pen: Pen) -> None:
 
 def _noise(s: Scene, pen: Pen) -> None:
     """Two standard deviations of a reading of landmark 1, with grips to pull them."""
-    if "sigma_r" not in (*s.panel.controls, *s.panel.more):
+    if "sigma_r" not in s.panel.controls:
         return
     sense, v = s.values["sense"], s.values
     m = s.landmarks[:, 0]

@@ -15,6 +15,8 @@
   };
   const el = PF.el;
 
+  const LETTERS = 20; // that a row of choices beside the picture has room for
+
   /* A number with the decimals it always has, whatever its size. */
   PF.written = function (value, decimals) {
     if (typeof value !== "number") return value;
@@ -91,7 +93,9 @@
         onclick: (e) => act(true, e.currentTarget) }, label);
       return { node: el("div", { class: "pf-control pf-is-button" }, button, help), write: () => {} };
     }
-    const make = { toggle, range: slider, choice: c.choices.length > 3 ? select : radios }[c.kind];
+    const letters = c.choices.reduce((sum, [, name]) => sum + name.length, 0);
+    const fits = c.choices.length <= 3 && letters <= LETTERS; // in one row
+    const make = { toggle, range: slider, choice: fits ? radios : select }[c.kind];
     return make(c, { id, label, help, described, value, act });
   };
 

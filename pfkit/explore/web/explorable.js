@@ -247,7 +247,7 @@
         ? PF.tween(frame, this.frames[this.at + 1], share) : frame.drawing;
       this.show(drawing, frame.report);
       this.ticks = Math.round(Math.min(this.position, last) * this.every);
-      this.transport.show(this.ticks, [0, last * this.every]);
+      this.transport.show(this.ticks, [0, last * this.every], true);
       const told = frame.report.phase.sentences[0];
       if (told && !this.starting && (this.film || performance.now() - this.saidAt > QUIET)) this.say(told);
     }

@@ -46,8 +46,9 @@
       this.began = 0;
     }
 
-    /* Where the run is, and how far one can go back. */
-    show(tick, [first, last]) {
+    /* Where the run is, and how far one can go back; a recorded run has an end. */
+    show(tick, [first, last], recorded = false) {
+      this.recorded = recorded;
       if (document.activeElement === this.bar && this.thumb.undecided) return;
       this.bar.min = first;
       this.bar.max = last;
@@ -56,9 +57,9 @@
     }
 
     showTime(tick) {
-      const ago = (+this.bar.max - tick) / this.rate;
-      this.time.textContent = ago < 0.05 ? `${(tick / this.rate).toFixed(1)}\u202fs`
-        : `${ago.toFixed(1)}\u202fs ago`;
+      const ago = (+this.bar.max - tick) / this.rate, at = (tick / this.rate).toFixed(1);
+      this.time.textContent = this.recorded ? `${at} of ${(+this.bar.max / this.rate).toFixed(0)}\u202fs`
+        : ago < 0.05 ? `${at}\u202fs` : `${ago.toFixed(1)}\u202fs ago`;
       this.bar.setAttribute("aria-valuetext", this.time.textContent);
     }
 
