@@ -92,13 +92,12 @@ class Run:
     def _compare(self, name: str | None, value: Any) -> None:
         """Start again, two worlds of one seed that differ in one control; None: one world."""
         first = self.worlds[0]
-        self.differs = name or ""
-        self.worlds = [first]
-        first.reset(first.seed)
-        if name is not None:
-            self.worlds.append(first.copy())
-            self.worlds[1].set(name, value)
-            self.worlds[1].reset(first.seed)
+        second = [first.copy()] if name is not None else []
+        for world in second:
+            world.set(str(name), value)
+        self.worlds, self.differs = [first, *second], name or ""
+        for world in self.worlds:
+            world.reset(first.seed)
         self._begin()
 
     # ---- the way back -----------------------------------------------------------------------
@@ -171,5 +170,8 @@ def _apply(worlds: list[Scene], operation: list[Any], differs: str) -> None:
             if not worlds[1].by_name[differs].live:
                 worlds[0].reset(worlds[0].seed)
         case ["hold", name, x, y, touch]:
-            for world in worlds:
+            for k, world in enumerate(worlds):
+                before = world.values.get(differs)
                 world.hold(name, finite("x", x), finite("y", y), touch)
+                if k and world.values.get(differs) != before:  # a handle of what they differ in
+                    world.set(differs, before)

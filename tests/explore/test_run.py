@@ -140,6 +140,17 @@ def test_each_world_has_its_own_value_of_the_control_that_differs_and_shares_all
         do(["compare", None, None], ["other", 3])
 
 
+def test_a_handle_moves_both_worlds_but_not_what_they_differ_in():
+    run, do = opened("drive", "localise")
+    do(["compare", "threshold", 1.0], ["step", 3], ["hold", "threshold", 159.0, 0.3, "press"])
+    do(["hold", "threshold", 159.0, 0.2, "drag"], ["hold", "landmark 2", 5.0, 5.0, "drag"])
+    assert [w.values["threshold"] for w in run.worlds] == [0.2, 1.0]
+    assert all(w.landmarks[:, 1] == pytest.approx([5, 5]) for w in run.worlds)
+    with pytest.raises(ParameterError, match="no control"):
+        do(["compare", "moon", 1.0])
+    assert len(run.worlds) == 2 and run.differs == "threshold"
+
+
 # ---- a hundred seeds ---------------------------------------------------------------------------
 
 

@@ -114,7 +114,7 @@
     }
 
     take() {
-      const names = this.renderer.handles.map((h) => h.name);
+      const names = [...new Set(this.renderer.handles.map((h) => h.name))]; // two worlds share them
       if (!names.length) return false;
       const next = names[(names.indexOf(this.taken?.name ?? "") + 1) % names.length];
       this.letGo(this.moved ? "release" : "cancel");
