@@ -369,7 +369,7 @@ crossover = Numeric(
     lambda e, s, step: (s / e) ** 2 * step,
     tol=0.02,
     unit="m",
-    world={"e": 1.0, "s": 10.0, "step": 0.25},
+    world={"e": 2.0, "s": 12.0, "step": 0.5},
     draw=_another_race,
 )
 crossover.wrong("""steps: counts steps

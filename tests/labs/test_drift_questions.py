@@ -50,7 +50,7 @@ def _ends(title):
 
 
 def test_the_crossover_is_where_bias_and_slip_are_equal():
-    rng, e, s, step = np.random.default_rng(2), 0.01, 0.1, 0.25
+    rng, e, s, step = np.random.default_rng(2), 0.02, 0.12, 0.5
     n = round(ITEMS["crossover"].key / step)
     ends = step * (1 + s * rng.standard_normal((4000, n))).sum(axis=1)
     assert ends.std() == pytest.approx(n * step * e, rel=5 / np.sqrt(2 * 4000))

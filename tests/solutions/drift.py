@@ -41,7 +41,7 @@ def odometer(ticks, N, r, L):
 drift = 0.02 * np.sqrt(np.sum(np.arange(1, 11) ** 2))
 
 # %% crossover
-crossover = (10 / 1) ** 2 * 0.25
+crossover = (12 / 2) ** 2 * 0.5
 
 # %% square
 x_ccw, x_cw = 0.042, -0.293
