@@ -52,13 +52,14 @@ from pfkit.labs.grade.cells import VERBS, lab_calls, labs_imported, said
 from pfkit.labs.guard import PAGE_LIMIT
 from pfkit.labs.items import Choice, Prediction, Text
 from pfkit.labs.progress import FORMER_NAMES
+from pfkit.labs.spaced_review import GAP, SITTING, TIMES, reviewable
 
 logger = logging.getLogger(__name__)
 ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
 SCRIPTS = ("keys.js", "palette.js", "operations.js", *FRONT_END, "page.js")
-LAB_SCRIPTS = ("store.js", "choices.js", "afterwards.js", "student.js", "lab.js")
+LAB_SCRIPTS = ("store.js", "choices.js", "afterwards.js", "student.js", "review.js", "lab.js")
 STUB = re.compile(r"^(\w+) = \.\.\.\s*(#.*)?$")  # an answer cell that waits for a letter
 
 
@@ -196,8 +197,15 @@ def read_lab(cells: list[dict[str, Any]]) -> dict[str, Any] | None:
         elif shown := said(sources[i], "solution", alias):
             entry.update(kind="solution", item=shown[0][0])
         out.append(entry)
-    former = FORMER_NAMES.get(module)
-    return {"lab": module, "former": former, "alias": alias, "cells": out}
+    here = {c["item"] for c in out if c["kind"] == "answer"}
+    again = [i for i in reviewable(import_module(f"pfkit.labs.{module}").LAB) if i in here]
+    return {
+        "lab": module,
+        "former": FORMER_NAMES.get(module),
+        "alias": alias,
+        "cells": out,
+        "review": {"gap": GAP, "sitting": SITTING, "times": TIMES, "items": again},
+    }
 
 
 def find_lab_cells(app: Sphinx, doctree: nodes.document) -> None:

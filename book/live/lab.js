@@ -9,7 +9,7 @@
   const BIGGEST = 2e6; // characters of a file to import
   const LONGEST = 100000; // characters of one imported answer
   const ROOM = 5e8; // bytes: a Python that holds more is ended after the run
-  let lab, limit, store, python, editors = [], bar, busy = null, predictions = {}, refused = false, who;
+  let lab, limit, store, python, editors = [], bar, busy = null, predictions = {}, refused = false, who, review;
 
   /* ---- a file of answers ------------------------------------------------------------------ */
   function exportAnswers() {
@@ -21,6 +21,8 @@
     const ticks = store.ticks(), student = PF.studentOf(store.student());
     if (Object.keys(ticks).length) data.ticks = ticks;
     if (student) data.student = student;
+    const again = review.state();
+    if (again.off || Object.keys(again.items).length) data.review = again;
     const blob = new Blob([JSON.stringify(data, null, 1) + "\n"], { type: "application/json" });
     const link = el("a", { href: URL.createObjectURL(blob), download: `${lab.lab}_answers.json` });
     document.body.append(link);
@@ -432,6 +434,7 @@
         if (check) {
           const told = report.headline.slice(this.cell.item.length + 2);
           this.judged = { source, status: report.status, told: told || "could not be judged" };
+          if (report.status === "passed") review.enlist(this.cell.item);
           if (["wrong", "partial"].includes(report.status)) this.hints++;
           this.save(true);
         }
@@ -565,7 +568,10 @@
       const node = at(cell);
       editors.push(new Answer(cell, check, node, check && at(check)));
     }
-    editors[0].root.before(bar, who.root);
+    review = new PF.Review(lab.review,
+      { read: () => store.review(), write: (x) => editors[0].isKept(store.writeReview(x)) },
+      async (message) => { await informed(); return python.ask({ lab: lab.lab, ...message }); });
+    editors[0].root.before(bar, who.root, review.root);
     for (const cell of lab.cells.filter((c) => c.kind === "solution" && at(c))) {
       if (editors.some((e) => e.worked && e.cell.item === cell.item)) at(cell).remove();
     }

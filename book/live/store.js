@@ -95,6 +95,11 @@
 
     writeStudent(student) { return this.write("*student", student || {}); }
 
+    /* When what was solved comes back: { off, items: { item: { day, times } } }. */
+    review() { return this.whole("*review"); }
+
+    writeReview(review) { return this.write("*review", review); }
+
     /* Tell of what other tabs write: hear(name, text), with text null for a removal. */
     listen(hear) {
       addEventListener("storage", ({ key, newValue }) => {

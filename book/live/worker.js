@@ -130,6 +130,8 @@ const DO = {
   progress: (m) => cells.progress(m.lab),
   restore: (m) => cells.restore(m.lab, m.text),
   student: (m) => cells.student(m.lab, m.who, m.term),
+  review: (m) => cells.review(m.lab, m.item, m.times),
+  reviewed: (m) => cells.reviewed(m.lab, m.item, m.times, m.answer),
   solution: (m) => cells.solution(m.lab, m.item),
 };
 

@@ -107,7 +107,8 @@ A check prints, message first::
 
 Modules: `items` (declarations), `lab` (verbs), `guard` (survives student code), `verdict`,
 `progress` (JSON), `summary`, `calibration` (SVG), `controls` (ipywidgets), `replay` (false-fail
-rates), `catalogue` (which labs there are). All are NumPy and standard library only.
+rates), `spaced_review` (problems that come back),
+`catalogue` (which labs there are). All are NumPy and standard library only.
 """
 
 from pfkit.labs.items import (
@@ -125,6 +126,7 @@ from pfkit.labs.items import (
 )
 from pfkit.labs.lab import Lab, LabError, Question
 from pfkit.labs.replay import replay
+from pfkit.labs.spaced_review import review
 
 __all__ = [
     "Choice",
@@ -142,4 +144,5 @@ __all__ = [
     "code",
     "experiment",
     "replay",
+    "review",
 ]

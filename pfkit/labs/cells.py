@@ -23,6 +23,7 @@ from importlib import import_module
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from pfkit.labs import spaced_review
 from pfkit.labs.guard import Capped, describe
 from pfkit.labs.lab import Lab
 from pfkit.labs.names import bound_and_used
@@ -219,6 +220,15 @@ class Cells:
     def solution(self, lab: str, item: str) -> str:
         """The worked answer; whether it may be seen is for the page to know."""
         return lab_called(lab).items[item].worked()
+
+    def review(self, lab: str, item: str, times: int) -> str:
+        """A problem that comes back, in words."""
+        return spaced_review.problem(lab_called(lab), item, times).asked()
+
+    def reviewed(self, lab: str, item: str, times: int, answer: str) -> str:
+        """JSON of whether the answer to it is right, and what to say."""
+        asked = spaced_review.problem(lab_called(lab), item, times)
+        return json.dumps(spaced_review.judged(asked, answer))
 
 
 def lab_called(name: str) -> Lab:

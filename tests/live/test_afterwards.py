@@ -7,6 +7,7 @@ import json
 import pytest
 from reader import Reader
 
+from pfkit.labs import spaced_review
 from pfkit.labs.lab3 import LAB
 
 pytestmark = pytest.mark.page
@@ -81,6 +82,57 @@ def test_numbers_of_ones_own_are_asked_judged_kept_and_exported(lab):
     assert "p1b: passed" in lab.answer("p1b", f"p1b = {mine!r}")
     assert export(lab)["student"] == {"who": "jo17", "term": "spring"}
     assert not lab.page.errors and not lab.page.outside()
+
+
+WEEK = 7 * 86_400_000
+OLD = (
+    "() => localStorage.setItem('where-am-i/1/lab3/*review', JSON.stringify({ items: { p1b: "
+    f"{{ day: new Date(Date.now() - {WEEK}).toISOString().slice(0, 10), times: 1 }} }} }}))"
+)
+
+
+def test_a_solved_problem_comes_back_after_a_week_with_other_numbers(lab):
+    review = lab.tab.locator(".pf-review")
+    assert not review.is_visible(), "it was solved a minute ago"
+    assert export(lab)["review"]["items"]["p1b"]["times"] == 0
+    lab.tab.evaluate(OLD)
+    lab.tab.reload()
+    lab = Reader(lab.page)
+    review.locator("summary").focus()
+    lab.tab.keyboard.press("Enter")
+    mine = problem_of("jo17", "p1b", 1)
+    review.get_by_text(mine.asked()).wait_for()
+    form = review.get_by_role("form", name="Review p1b")
+    form.get_by_label("Your answer").fill("7, 7, 7")
+    lab.tab.keyboard.press("Enter")
+    form.locator(".pf-note", has_text="not yet").wait_for()
+    form.get_by_label("Your answer").fill(", ".join(map(str, mine.key)))
+    lab.tab.keyboard.press("Enter")
+    form.locator(".pf-note", has_text="right. It comes back in 7 days.").wait_for()
+    assert export(lab)["review"]["items"]["p1b"]["times"] == 2
+    lab.tab.reload()
+    Reader(lab.page)
+    assert not review.is_visible()
+
+
+def test_reviews_can_be_switched_off(lab):
+    lab.tab.evaluate(OLD)
+    lab.tab.reload()
+    review = lab.tab.locator(".pf-review")
+    review.locator("summary").click()
+    review.get_by_label("Do not offer reviews").check()
+    assert export(lab)["review"]["off"] is True
+    lab.tab.reload()
+    Reader(lab.page)
+    assert not review.is_visible()
+
+
+def problem_of(who, item, times):
+    try:
+        LAB.student(who, "spring")
+        return spaced_review.problem(LAB, item, times)
+    finally:
+        LAB.forget()
 
 
 @pytest.mark.parametrize(
