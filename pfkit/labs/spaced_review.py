@@ -17,6 +17,7 @@ import datetime
 import hashlib
 import json
 from importlib import import_module
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any
 
@@ -119,16 +120,16 @@ def _read(file: Path) -> dict[str, Any]:
 
 def _enlist(items: dict[str, dict[str, Any]], folder: Path) -> None:
     """Answered items of the labs saved in this folder, from the day they were saved."""
-    from pfkit.labs import catalogue
-
-    for lab in catalogue.names():
-        file = folder / f"{lab}_answers.json"
-        data, _ = progress.read(file, lab)
+    for file in sorted(folder.glob("*_answers.json")):
+        name = progress.present_name(file.name.removesuffix("_answers.json"))
+        if not name.isidentifier() or not find_spec(f"pfkit.labs.{name}"):
+            continue
+        data, _ = progress.read(file, name)
         if data is None:
             continue
         day = datetime.date.fromtimestamp(file.stat().st_mtime).isoformat()
-        for item in set(reviewable(_lab(lab))) & data["answers"].keys():
-            items.setdefault(f"{lab}/{item}", {"day": day, "times": 0})
+        for item in set(reviewable(_lab(name))) & data["answers"].keys():
+            items.setdefault(f"{name}/{item}", {"day": day, "times": 0})
 
 
 def _lab(name: str) -> Lab:
