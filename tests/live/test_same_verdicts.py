@@ -49,7 +49,7 @@ ASK = """async ([source]) => {
 def tab(open_page):
     page = open_page("lab.html")
     page.tab.set_default_timeout(600_000)
-    page.tab.wait_for_function("window.PF && PF.Python")
+    page.tab.wait_for_function("Boolean(window.PF && PF.Python)")
     yield page.tab
     page.tab.context.close()
 

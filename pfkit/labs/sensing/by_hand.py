@@ -6,35 +6,59 @@ from pfkit.labs import Numeric, Question
 
 HAND = Question("By hand")
 
+
+def _seen(x, y, robot_x, robot_y, heading):
+    """A landmark, a robot with its heading in degrees, and the way to the bearing between them."""
+    dx, dy = x - robot_x, y - robot_y
+    told = {"x": x, "y": y, "robot_x": robot_x, "robot_y": robot_y, "heading": heading}
+    direction = round(float(np.degrees(np.arctan2(dy, dx))), 1)
+    raw = round(direction - heading, 1)
+    return told | {"dx": dx, "dy": dy, "direction": direction, "raw": raw}
+
+
+def _elsewhere(rng):
+    """Down and to the left of the robot, which looks up and to the left, as in print."""
+    (x, y), (dx, dy) = rng.integers(-2, 3, 2), rng.integers(1, 5, 2)
+    return _seen(int(x), int(y), int(x + dx), int(y + dy), int(rng.integers(20, 34)) * 5)
+
+
+def _wrapped(degrees):
+    return (degrees + 180) % 360 - 180
+
+
 hand = Numeric(
-    """Bearing, in degrees, of a landmark at (1, -1) from (3, 1), heading 150
-         degrees
+    """Bearing, in degrees, of a landmark at ({x}, {y}) from ({robot_x}, {robot_y}), heading
+         {heading} degrees
     Which way does the vector from the robot to the landmark point on the map?
-    It is (-2, -2), which points to -135 degrees. Then subtract the heading.
-    -135 - 150 = -285; add a whole turn.""",
-    75.0,
+    It is ({dx}, {dy}), which points to {direction} degrees. Then subtract the heading.
+    {direction} - {heading} = {raw}; add a whole turn.""",
+    lambda raw, **_: _wrapped(raw),
     tol=0.5,
+    world=_seen(1, -1, 3, 1, 150),
+    draw=_elsewhere,
 )
 hand.wrong("""no-heading: is the direction on the map, not seen from the robot's nose
     The same landmark looks different when the robot turns.
     A bearing is measured from the nose: subtract the heading.
-    -135 - 150, wrapped.""")(-135.0)
+    {direction} - {heading}, wrapped.""")(lambda direction, **_: direction)
 hand.wrong("""no-wrap: is not wrapped into (-180, 180]
     Would a sensor report more than half a turn?
     Add or subtract whole turns until it lies between -180 and 180.
-    -285 + 360.""")(-285.0)
+    {raw} + 360.""")(lambda raw, **_: raw)
 hand.wrong("""half-turn: is half a turn off
     Is the landmark really up and to the right of the robot?
     arctan(dy / dx) forgets both signs, and robot minus landmark turns both round.
-    Use atan2(-2, -2) = -135 degrees.""")(-105.0)
+    Use atan2({dy}, {dx}) = {direction} degrees.""")(lambda raw, **_: _wrapped(raw + 180))
 hand.wrong("""plus-heading: adds the heading instead of subtracting it
     Turn left: does what is in front of you move left or right?
     The bearing falls as the heading grows.
-    -135 - 150, wrapped.""")(15.0)
+    {direction} - {heading}, wrapped.""")(
+    lambda direction, heading, **_: _wrapped(direction + heading)
+)
 hand.wrong("""radians: is in radians
     Which unit was asked for?
     Degrees, please.
-    1.309 rad times 180 / pi.""")(1.309, when=lambda x: abs(x - 1.309) < 0.01)
+    Multiply by 180 / pi.""")(lambda raw, **_: np.radians(_wrapped(raw)))
 
 ERRORS = np.array([[0.5, 0.0, 3.0, 2.0], [0.5, 3.0, 0.0, 2.0], [2.0, 0.0, 1.0, 0.0]])
 
