@@ -24,6 +24,7 @@ from pfkit.logs.datasets.described import is_described, read_described
 from pfkit.logs.datasets.labyrinth import is_labyrinth, read_labyrinth
 from pfkit.logs.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
 from pfkit.logs.datasets.plaza import is_plaza, read_plaza
+from pfkit.logs.datasets.rosbag import bags, read_rosbag
 from pfkit.logs.logfile import is_saved, read_log
 from pfkit.worlds.log import Log
 
@@ -96,12 +97,23 @@ def _described(folder: Path, wanted: Wanted) -> Log:
     return read_described(folder, source, wanted.drop_unknown, wanted.need_truth, wanted.map)
 
 
+def _rosbag(folder: Path, wanted: Wanted) -> Log:
+    topics = {"odometry": wanted.odometry, "scan": wanted.scan, "truth": wanted.truth}
+    source = f"bag, {folder.name}"
+    return read_rosbag(folder, source, wanted.need_truth, wanted.map, topics)
+
+
 LAYOUTS = {
     "described": Layout(is_described, _described, "log.yaml, and the tables that it names"),
     "saved": Layout(is_saved, _saved, "steps.txt and measurements.txt, as save_log writes them"),
     "MRCLAM": Layout(is_mrclam, _mrclam, "*_Odometry.dat, *_Measurement.dat, *Barcodes.dat"),
     "Plaza": Layout(is_plaza, _plaza, "odometry.txt, ranges.txt and beacons.txt"),
     "Labyrinth": Layout(is_labyrinth, _labyrinth, "*.txt with lines range2 and odom2diff"),
+    "rosbag": Layout(
+        lambda folder: bool(bags(folder)),
+        _rosbag,
+        "*.bag, *.mcap, *.db3 or a folder with metadata.yaml, and a map (.yaml)",
+    ),
     "CARMEN": Layout(
         lambda folder: carmen_file(folder) is not None,
         _carmen,
