@@ -8,8 +8,10 @@ from __future__ import annotations
 import argparse
 import sys
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
+from functools import partial
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -27,6 +29,7 @@ from pfkit.judging.localise import (
     settings_for,
 )
 from pfkit.judging.settings import rig_of
+from pfkit.judging.study import Progress, silent
 from pfkit.logs.calibration import Calibration
 from pfkit.logs.datasets import LAYOUTS, load_log
 from pfkit.logs.datasets.describe import describe
@@ -157,7 +160,7 @@ def run(args: argparse.Namespace) -> None:
         start,
         args.particles,
         settings=settings,
-        watch=_progress(),
+        progress=_progress(),
         recover=args.recover,
     )
     write_track(args.out / "track.csv", log, track)
@@ -237,19 +240,13 @@ def _calibration(log: Log, seconds: float | None) -> Calibration | None:
     return calibration
 
 
-def _progress() -> Callable[[int, int], None]:
-    """A line on standard error: a moving one in a terminal, every quarter elsewhere."""
-    live, shown = sys.stderr.isatty(), -1
+def _progress() -> Progress:
+    """A bar on standard error in a terminal, if `tqdm` is installed; NumPy alone has none."""
+    if find_spec("tqdm") is None:
+        return silent
+    from tqdm import tqdm
 
-    def watch(k: int, n: int) -> None:
-        nonlocal shown
-        part = 100 * k // n if live else 25 * (4 * k // n)
-        if part != shown:
-            shown = part
-            end = "\n" if part == 100 or not live else "\r"
-            print(f"filtering {part:3d} %", end=end, file=sys.stderr, flush=True)
-
-    return watch
+    return partial(tqdm, desc="filtering", unit=" steps", disable=None)
 
 
 def _report(log: Log, track: Track, limit: float, since: float) -> None:

@@ -115,11 +115,11 @@ EDGE: dict[str, tuple[str, ...]] = {
     "palette": (),
     "explore": (),
     "labs": (),
-    "labs.grade": ("nbformat", "nbclient", "jupyter_client"),
+    "labs.grade": ("nbformat", "nbclient", "jupyter_client", "tqdm"),
     "labs.release": ("nbformat", "nbclient"),
     "plotting": ("matplotlib",),
     "widgets": ("anywidget", "ipywidgets", "traitlets", "IPython"),
-    "__main__": ("matplotlib",),
+    "__main__": ("matplotlib", "tqdm"),
 }
 
 # Module -> what it imports inside a function, where it is there: extras that read files of others.

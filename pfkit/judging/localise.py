@@ -26,7 +26,6 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -39,6 +38,7 @@ from pfkit.filters.recovery import Memory, inject
 from pfkit.filters.tempering import tempered_update
 from pfkit.judging.diagnostics import pose_error, settling_time
 from pfkit.judging.settings import Settings, calibrate_first, rig_of, settings_for
+from pfkit.judging.study import Progress, silent
 from pfkit.logs.odometry import (
     ComposedMotion,
     Drift,
@@ -70,7 +70,6 @@ __all__ = [
 ]
 
 Array = NDArray[np.float64]
-Watch = Callable[[int, int], object]
 OUTLIER_SHARE = 0.001  # of the measurements of a global start: may come from anywhere
 BEAMS = 30  # of a scan
 SPACING = 0.1  # metres or radians that the robot moves before it looks again
@@ -121,7 +120,7 @@ def localise(
     settings: Settings | None = None,
     plain: bool = False,
     every_row: bool = False,
-    watch: Watch | None = None,
+    progress: Progress = silent,
     recover: bool = False,
 ) -> Track:
     """Run the filter along a recorded log.
@@ -139,7 +138,8 @@ def localise(
         Weigh plainly from a global start, too, and believe every measurement: to see what happens.
     every_row : bool
         One prediction per step instead of one per measurement: to see that it is the same.
-    watch : function (k, n), called after step k of n
+    progress : function (iterable, total=n) -> iterable
+        What the steps pass through, such as `tqdm`, which draws a bar.
     recover : bool
         Replace a share of the particles by new ones, anywhere on the map, whenever measurements
         become less likely than they used to be (augmented MCL): for robots that are carried off.
@@ -175,7 +175,7 @@ def localise(
     few = settings.M[0] if looked is not log and M > settings.M[0] else M
     world = log.world if recover else None
     estimate, Sigma, found = _filter(
-        short, bel, sensor, rng, staged, settings.limit, few, world, watch
+        short, bel, sensor, rng, staged, settings.limit, few, world, progress
     )
     seconds = time.perf_counter() - began
     estimate, sd = fill_in(log, settings.drift, np.append(0, steps + 1), estimate, Sigma)
@@ -247,14 +247,14 @@ def _filter(
     limit: float,
     few: int,
     world: object | None,
-    watch: Watch | None,
+    progress: Progress,
 ) -> tuple[Array, Array, Hypotheses]:
     """Answers (3, T + 1, B), covariances (3, 3, T + 1, B), from before the first step on."""
     motion, memory = ComposedMotion(), Memory()
     answers, spreads = [mean_pose(bel)], [covariance(bel)]
     found: list[tuple[float, float, Array]] = []
     pause = max(1, len(log) // LOOKS)
-    for k, (t, u, z, _) in enumerate(log):
+    for k, (t, u, z, _) in enumerate(progress(log, total=len(log))):
         bel = predict(bel, u, motion, rng)
         if z.shape[1]:
             if world is not None:
@@ -271,8 +271,6 @@ def _filter(
                 bel = resample(bel, systematic, rng, n=few)
             if world is not None:
                 bel, _ = inject(bel, share, world.sample_poses, rng)  # type: ignore[attr-defined]
-        if watch is not None:
-            watch(k + 1, len(log))
     heaps = Hypotheses(
         np.array([t for t, _, _ in found]),
         np.array([mass for _, mass, _ in found]),

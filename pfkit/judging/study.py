@@ -38,8 +38,6 @@ On a cluster, with Dask::
 from __future__ import annotations
 
 import itertools
-import sys
-import time
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import Executor, Future, as_completed
 from typing import Any
@@ -54,6 +52,7 @@ __all__ = ["from_csv", "grid", "one_by_one", "run", "summarise", "to_csv"]
 
 Setting = Mapping[str, Any]
 Experiment = Callable[..., Mapping[str, Any]]
+Progress = Callable[..., Iterable[Any]]
 
 
 def grid(**values: Sequence[Any]) -> list[dict[str, Any]]:
@@ -96,7 +95,7 @@ def run(
     *,
     block: int = 50,
     executor: Executor | None = None,
-    progress: bool | None = None,
+    progress: Progress | None = None,
 ) -> Table:
     """Perform an experiment for all settings, in blocks of runs.
 
@@ -112,8 +111,8 @@ def run(
         size gives other random numbers.
     executor : concurrent.futures.Executor, optional
         A process pool, ``client.get_executor()`` of Dask, or nothing for this process.
-    progress : bool, optional
-        Draw a progress bar on stderr; if left out, when stderr is a terminal.
+    progress : function (iterable, total=n) -> iterable, optional
+        What the blocks pass through when they are done, such as `tqdm`, which draws a bar.
 
     Returns
     -------
@@ -133,8 +132,8 @@ def run(
         for setting in settings
         for i, start in enumerate(first)
     ]
-    bar = _Bar(len(tasks), sys.stderr.isatty() if progress is None else progress)
-    results = _serially(tasks, bar) if executor is None else _submitted(tasks, executor, bar)
+    shown = progress or silent
+    results = _serially(tasks, shown) if executor is None else _submitted(tasks, executor, shown)
     columns = {name: _column([s[name] for s in settings], runs) for name in settings[0]}
     columns["run"] = np.tile(np.arange(runs, dtype=np.int64), len(settings))
     for name in results[0]:
@@ -163,24 +162,26 @@ def _one_block(
     return result
 
 
-def _serially(tasks: list[tuple], bar: _Bar) -> list[dict[str, NDArray[Any]]]:
-    results = []
-    for task in tasks:
-        results.append(_one_block(*task))
-        bar.advance()
-    return results
+def _serially(tasks: list[tuple], shown: Progress) -> list[dict[str, NDArray[Any]]]:
+    return [_one_block(*task) for task in shown(tasks, total=len(tasks))]
 
 
-def _submitted(tasks: list[tuple], executor: Executor, bar: _Bar) -> list[dict[str, NDArray[Any]]]:
+def _submitted(
+    tasks: list[tuple], executor: Executor, shown: Progress
+) -> list[dict[str, NDArray[Any]]]:
     futures: list[Future] = [executor.submit(_one_block, *task) for task in tasks]
     try:
-        for done in as_completed(futures):
+        for done in shown(as_completed(futures), total=len(futures)):
             done.result()  # the first failure ends the study
-            bar.advance()
     finally:
         for future in futures:
             future.cancel()
     return [future.result() for future in futures]
+
+
+def silent(steps: Iterable[Any], total: int) -> Iterable[Any]:
+    """The progress that nobody asked to see."""
+    return steps
 
 
 def _check_settings(settings: Iterable[Setting]) -> list[Setting]:
@@ -203,21 +204,3 @@ def _column(values: list[Any], runs: int) -> NDArray[Any]:
         named = [str(v) for v in named]
     column = np.array(named)
     return np.repeat(column.astype(np.int64) if column.dtype.kind == "i" else column, runs)
-
-
-class _Bar:
-    """A progress bar on stderr: ``[########............]  8/20 blocks, 14 s left``."""
-
-    def __init__(self, total: int, shown: bool) -> None:
-        self.total, self.shown, self.done, self.start = total, shown, 0, time.monotonic()
-
-    def advance(self) -> None:
-        """One block more; the last one ends the line."""
-        self.done += 1
-        if not self.shown:
-            return
-        full = 20 * self.done // self.total
-        left = (time.monotonic() - self.start) / self.done * (self.total - self.done)
-        line = f"\r[{'#' * full:.<20}] {self.done}/{self.total} blocks, {left:.0f} s left "
-        sys.stderr.write(line + ("\n" if self.done == self.total else ""))
-        sys.stderr.flush()

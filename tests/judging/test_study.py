@@ -1,7 +1,6 @@
 """Studies: the same table whoever computed it, and tables that survive a file."""
 
 import importlib.util
-import sys
 from concurrent.futures import ProcessPoolExecutor, ThreadPoolExecutor
 
 import numpy as np
@@ -133,14 +132,31 @@ def test_functions_and_models_appear_by_name():
     assert set(table["nu"]) == {"4", "inf"}
 
 
-def test_the_bar_counts_blocks_on_stderr(capsys):
-    study.run(localise, [{"M": 20}], runs=6, block=2, progress=True)
+def test_blocks_pass_through_the_progress_that_is_asked_for(capsys):
+    seen = []
+
+    def bar(steps, total):
+        seen.append(total)
+        for step in steps:
+            seen.append("block")
+            yield step
+
+    quiet = study.run(localise, [{"M": 20}], runs=6, block=2)
+    assert capsys.readouterr() == ("", "")
+    with ThreadPoolExecutor(2) as pool:
+        for executor in (None, pool):
+            shown = study.run(
+                localise, [{"M": 20}], runs=6, block=2, executor=executor, progress=bar
+            )
+            np.testing.assert_array_equal(shown, quiet)
+    assert seen == [3, "block", "block", "block"] * 2
+
+
+def test_tqdm_is_such_a_progress(capsys):
+    tqdm = pytest.importorskip("tqdm").tqdm
+    study.run(localise, [{"M": 20}], runs=6, block=2, progress=tqdm)
     out, err = capsys.readouterr()
-    assert out == ""
-    assert "3/3 blocks" in err and err.endswith("\n")
-    study.run(localise, [{"M": 20}], runs=2, progress=False)
-    assert capsys.readouterr().err == ""
-    assert not sys.stderr.isatty()
+    assert out == "" and "3/3" in err
 
 
 @pytest.mark.parametrize(

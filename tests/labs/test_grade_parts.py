@@ -10,7 +10,6 @@ import submissions
 
 from pfkit.labs import lab3
 from pfkit.labs.grade import cells, report, suspicion
-from pfkit.labs.grade.bar import Bar
 from pfkit.labs.grade.batch import Batch, Limits, student
 from pfkit.labs.grade.notebook import NoSuchLab, find, steps
 from pfkit.labs.grade.seal import Unchanged
@@ -286,10 +285,3 @@ def test_whose_file_is_it(path, name):
 def test_a_chapter_in_a_folder_is_named_by_the_folder():
     for file in ("08 Particle filter.ipynb", "particle_filter_answers.json"):
         assert student(Path("ann") / file, "particle_filter") == "ann"
-
-
-def test_the_bar_ends_at_all(capsys):
-    bar = Bar(3)
-    for k in range(3):
-        bar.step(f"student {k}")
-    assert "3/3, 0 s left: student 2" in capsys.readouterr().err

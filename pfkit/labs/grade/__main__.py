@@ -6,8 +6,9 @@ import sys
 from collections import Counter
 from pathlib import Path
 
+from tqdm import tqdm
+
 from pfkit.labs.grade import report, submission
-from pfkit.labs.grade.bar import Bar
 from pfkit.labs.grade.batch import Batch, CannotGrade, Limits, Record
 from pfkit.labs.grade.notebook import NoSuchLab, Pristine, find
 from pfkit.labs.lab import Lab
@@ -117,10 +118,11 @@ def grade(pristine: Pristine, asked: argparse.Namespace) -> Journal:
         todo = [f for n, f in names.items() if n not in journal.records]
         kept = f", {len(journal.records)} kept" if asked.resume else ""
         print(f"{seconds:.0f} s; {len(todo)} submissions to grade{kept}", file=sys.stderr)
-        bar = Bar(len(todo))
-        for record in batch.grade(todo, asked.jobs):
-            journal.add(record)
-            bar.step(f"{record['student']} {record['status']}")
+        with tqdm(total=len(todo), unit=" submissions", disable=None) as bar:
+            for record in batch.grade(todo, asked.jobs):
+                journal.add(record)
+                bar.set_postfix_str(f"{record['student']} {record['status']}")
+                bar.update()
     journal.tables()
     journal.pages()
     return journal
