@@ -9,6 +9,7 @@ from pfkit.geometry import between as between
 from pfkit.geometry import circular_mean as circular_mean
 from pfkit.geometry import compose as compose
 from pfkit.geometry import inverse as inverse
+from pfkit.geometry import resultant_length as resultant_length
 from pfkit.geometry import wrap as wrap
 from pfkit.densities import chi2_quantile as chi2_quantile
 from pfkit.densities import chi2_tail as chi2_tail

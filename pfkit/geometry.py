@@ -3,7 +3,8 @@
 A robot on a floor has a pose: a position (x, y) and a heading theta. Headings live on a
 circle, not on a line: 359 degrees and 1 degree are two degrees apart, and their mean is 0,
 not 180. Whatever subtracts or averages headings must therefore know about the circle;
-`wrap` and `circular_mean` are the two functions that do.
+`wrap` and `circular_mean` are the two functions that do,
+and `resultant_length` says what a mean is worth: of two opposite headings there is none.
 
 A pose is also a rigid motion: "go to (x, y), then turn by theta". Motions compose, and each
 has an inverse. That group is called SE(2). Odometry between two instants is the motion
@@ -24,6 +25,7 @@ from numpy.typing import ArrayLike, NDArray
 from pfkit.errors import require_array
 
 TWO_PI = 2.0 * np.pi
+CANCELLED = 1e-12  # resultant length below which only rounding is left
 
 
 def wrap(angle: ArrayLike) -> NDArray[np.float64]:
@@ -158,8 +160,8 @@ def circular_mean(theta: ArrayLike, w: ArrayLike | None = None) -> NDArray[np.fl
     Returns
     -------
     array (...), radians in (-pi, pi]
-        For directions that cancel exactly the mean is not defined and the result is arbitrary;
-        look at the resultant length before you trust it.
+        NaN where the directions cancel: no direction is their mean. Where they nearly cancel
+        there is one, and it is worth little: `resultant_length` says how much.
 
     Raises
     ------
@@ -172,9 +174,60 @@ def circular_mean(theta: ArrayLike, w: ArrayLike | None = None) -> NDArray[np.fl
     >>> round(float(circular_mean(np.radians([350.0, 30.0]))), 6)  # 10 degrees, not 190
     0.174533
     """
+    return direction(*_resultant(theta, w))
+
+
+def resultant_length(theta: ArrayLike, w: ArrayLike | None = None) -> NDArray[np.float64]:
+    r"""How far directions agree: the length of their mean vector.
+
+    .. math:: R = \frac{1}{\sum_m w_m} \sqrt{\Big(\sum_m w_m \cos\theta_m\Big)^2
+                                            + \Big(\sum_m w_m \sin\theta_m\Big)^2}
+
+    It is 1 if all agree and 0 if they cancel; a normal spread of sigma radians gives
+    :math:`e^{-\sigma^2/2}`. Of n independent directions without a common one, R exceeds r with
+    probability about :math:`e^{-n r^2}` (Rayleigh's test).
+
+    Parameters
+    ----------
+    theta : array_like (..., M), radians
+    w : array_like (..., M) or (M,), optional
+        Weights >= 0; equal if left out. They need not sum to one.
+
+    Returns
+    -------
+    array (...), between 0 and 1
+
+    Raises
+    ------
+    ParameterError, ShapeError
+        As `circular_mean`.
+
+    Notes
+    -----
+    Source: K. V. Mardia and P. E. Jupp, Directional Statistics (2000), sections 2.3 and 6.3.
+
+    Examples
+    --------
+    >>> round(float(resultant_length(np.radians([0.0, 90.0]))), 6)  # half the diagonal
+    0.707107
+    """
+    return np.hypot(*_resultant(theta, w))
+
+
+def _resultant(
+    theta: ArrayLike, w: ArrayLike | None
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """Weighted mean of sine and cosine over the last axis."""
     theta = require_array("theta", theta, (..., "M"))
     w = 1.0 if w is None else w
     weights = require_array("w", w, theta.shape[theta.ndim - np.ndim(w) :])  # of its last axes
-    return np.arctan2(
-        np.sum(weights * np.sin(theta), axis=-1), np.sum(weights * np.cos(theta), axis=-1)
+    total = np.sum(np.broadcast_to(weights, theta.shape), axis=-1)
+    return (
+        np.sum(weights * np.sin(theta), axis=-1) / total,
+        np.sum(weights * np.cos(theta), axis=-1) / total,
     )
+
+
+def direction(sine: NDArray[np.float64], cosine: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Direction of a mean vector; NaN where nothing but rounding is left of it."""
+    return np.where(np.hypot(sine, cosine) > CANCELLED, np.arctan2(sine, cosine), np.nan)[()]

@@ -18,7 +18,7 @@ CORE: dict[str, dict[str, str]] = {
             "DataError DegenerateWeightsError ParameterError PfkitError ShapeError "
             "UnknownLandmarkError"
         ),
-        "geometry": "between circular_mean compose inverse wrap",
+        "geometry": "between circular_mean compose inverse resultant_length wrap",
         "densities": "chi2_quantile chi2_tail log_gaussian",
     },
     "particles": {

@@ -192,6 +192,10 @@ TABLE: dict[str, Row] = {
         pf.circular_mean,
         dict(theta=([1.0, 2.0], "scores"), w=([1.0, 1.0], "numbers")),
     ),
+    "resultant_length": (
+        pf.resultant_length,
+        dict(theta=([1.0, 2.0], "scores"), w=([1.0, 1.0], "numbers")),
+    ),
     "Particles": (
         pf.Particles,
         dict(state=(BEL.state, "state"), log_w=(BEL.log_w, "log-weights of M")),

@@ -110,3 +110,30 @@ def test_what_nobody_knows_stays_unknown_and_spoils_nothing_else():
             refused(truth[:, 0], [np.inf, 0, 0])
     with pytest.raises(pf.ParameterError, match="nan"):
         pf.compose(truth[:, 1], truth[:, 0])
+
+
+def test_opposite_directions_have_no_mean():
+    theta = np.array([[0.0, np.pi], [0.3, 0.5]])
+    mean = pf.circular_mean(theta)
+    assert np.isnan(mean[0]) and mean[1] == pytest.approx(0.4)
+    assert np.isnan(pf.circular_mean(np.arange(7) * 2 * np.pi / 7))
+    assert pf.circular_mean(theta[0], [1.0, 1.0 - 1e-6]) == pytest.approx(0, abs=1e-6)
+
+
+def test_the_resultant_is_the_length_of_the_mean_vector():
+    rng = np.random.default_rng(3)
+    theta, w = rng.uniform(-4, 4, (5, 9)), rng.random((5, 9))
+    vector = np.sum(w * np.exp(1j * theta), axis=-1) / w.sum(axis=-1)
+    np.testing.assert_allclose(pf.resultant_length(theta, w), np.abs(vector))
+    np.testing.assert_allclose(pf.resultant_length(theta + 1.0, 3 * w), np.abs(vector))
+    assert pf.resultant_length([0.0, np.pi]) == pytest.approx(0)
+    assert pf.resultant_length([2.0, 2.0]) == pytest.approx(1)
+    spread = rng.normal(1.0, 0.8, 40_000)
+    assert pf.resultant_length(spread) == pytest.approx(np.exp(-0.32), abs=0.01)
+
+
+def test_rayleighs_tail():
+    """Of n directions without a common one, R exceeds r with probability exp(-n r^2)."""
+    theta = np.random.default_rng(4).uniform(-np.pi, np.pi, (20_000, 50))
+    share = np.mean(pf.resultant_length(theta) > 0.2)
+    assert share == pytest.approx(np.exp(-2.0), abs=0.01)

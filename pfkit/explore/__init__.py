@@ -35,6 +35,7 @@ SCENES = {
     "corridor": ("pfkit.explore.corridor", "Corridor"),
     "drive": ("pfkit.explore.drive", "Drive"),
     "mower": ("pfkit.explore.mower", "Mower"),
+    "estimates": ("pfkit.explore.estimates", "Estimates"),
     "exact": ("pfkit.explore.exact", "Exact"),
     "office": ("pfkit.explore.office", "Office"),
     "story": ("pfkit.explore.story", "Story"),

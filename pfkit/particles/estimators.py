@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.errors import require_number
-from pfkit.geometry import wrap
+from pfkit.geometry import direction, wrap
 from pfkit.particles.particle_set import Particles, normalise
 
 
@@ -36,6 +36,9 @@ def mean_pose(bel: Particles) -> NDArray[np.float64]:
     Returns
     -------
     array (D,) or (D, B), metres and radians
+        The heading is NaN where the headings cancel and so have no mean. Where they nearly do, it
+        is a number that the next cloud will not repeat: ask `resultant_length(bel.state[2], bel.w)`
+        before you act on it.
 
     Raises
     ------
@@ -46,7 +49,7 @@ def mean_pose(bel: Particles) -> NDArray[np.float64]:
     mean = _average(bel.state, w)
     if bel.state.shape[0] >= 3:
         theta = bel.state[2]
-        mean[2] = np.arctan2(_average(np.sin(theta), w), _average(np.cos(theta), w))
+        mean[2] = direction(_average(np.sin(theta), w), _average(np.cos(theta), w))
     return mean
 
 
@@ -67,6 +70,7 @@ def covariance(bel: Particles) -> NDArray[np.float64]:
     Returns
     -------
     array (D, D) or (D, D, B), in the products of the state's units
+        NaN in the rows of a heading that has no mean.
 
     Raises
     ------

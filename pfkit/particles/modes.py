@@ -1,9 +1,14 @@
-r"""Clusters: the hypotheses of a cloud, each with its mass.
+r"""Clusters: the hypotheses of a cloud, each with its mass and its spread.
 
 A mean summarises one heap of particles. A cloud in a symmetric building is several heaps, and
 the honest answer is a list: here with 60 %, there with 40 %. To find the heaps we lay a coarse
 grid over the state, keep the cells that hold particles, and join cells that touch, at a side or
-at a corner. What hangs together is one hypothesis.
+at a corner. What hangs together is one hypothesis. Their means and covariances and those of
+the whole cloud obey the law of total covariance,
+
+.. math:: \Sigma = \sum_c W_c\, \Sigma_c + \sum_c W_c\, (\mu_c - \mu)(\mu_c - \mu)^T ,
+
+what is uncertain within the hypotheses and what is uncertain between them.
 
 The size of the cells is the resolution: two heaps closer than a cell or two are one. A thin
 bridge of stray particles joins what it connects.
@@ -19,7 +24,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import require_array, whole_cells
-from pfkit.particles.estimators import mean_pose
+from pfkit.particles.estimators import covariance, mean_pose
 from pfkit.particles.particle_set import Particles, normalise
 
 Array = NDArray[np.float64]
@@ -34,11 +39,13 @@ class Clusters(NamedTuple):
     mean : array (D, C), the mean pose of each
     mass : array (C,), the share of the weight of each
     label : int64 array (M,), which cluster a particle belongs to; -1 where no weight is near
+    covariance : array (D, D, C), the covariance of each about its own mean
     """
 
     mean: Array
     mass: Array
     label: NDArray[np.int64]
+    covariance: Array
 
 
 def clusters(bel: Particles, cell: ArrayLike = (1.0, 1.0, math.pi / 4)) -> Clusters:
@@ -102,14 +109,16 @@ def _join(cells: list[Cell], held: NDArray[np.bool_], turn: int) -> NDArray[np.i
 
 
 def _summary(bel: Particles, label: NDArray[np.int64]) -> Clusters:
-    """Masses and means, the heaviest cluster first."""
+    """Masses, means and covariances, the heaviest cluster first."""
     mass = np.bincount(label + 1, bel.w, label.max() + 2)[1:].astype(float)
     order = np.argsort(-mass, kind="stable")
     rank = np.empty(order.size + 1, dtype=np.int64)
     rank[order], rank[-1] = np.arange(order.size), -1
     label = rank[label]
-    means = []
-    for c in range(order.size):
-        part = label == c
-        means.append(mean_pose(Particles(bel.state[:, part], normalise(bel.log_w[part])[0])))
-    return Clusters(np.array(means).T.reshape(len(bel.state), -1), mass[order], label)
+    parts = [
+        Particles(bel.state[:, label == c], normalise(bel.log_w[label == c])[0])
+        for c in range(order.size)
+    ]
+    means = np.stack([mean_pose(part) for part in parts], axis=-1)
+    spreads = np.stack([covariance(part) for part in parts], axis=-1)
+    return Clusters(means, mass[order], label, spreads)

@@ -47,6 +47,9 @@ READERS = [
     ("banana", "banana", 1, 0, (("a1", 0), ("a3", 0), ("a5", 0))),
     ("banana", "banana", 1, 1, ("match",)),
     ("banana", "banana", 1, 2, ("match",)),
+    ("estimates", "estimates", 1, 0, ("across",)),
+    ("estimates", "estimates", 1, 1, ("across", ("width_a", 1.2), ("width_b", 0.2))),
+    ("estimates", "estimates", 1, 2, ("across", ("share", 55))),
     ("exact", "exact", 2, 0, (("M", 10000),)),
     ("exact", "exact", 3, 1, (("prior", "known"), ("M", 50))),
     ("exact", "exact", 1, 2, (("trust", 3),)),
@@ -78,6 +81,12 @@ def corner(s):
         s.hold(name, *handles(s.frame()[0])[name], "press")
         s.hold(name, *place, "drag")
         s.hold(name, *place, "release")
+
+
+def across(s):
+    """Drag the heaps to both sides of the wall, so that their mean lies in it."""
+    s.hold("heap A", 4.0, 1.9, "drag")
+    s.hold("heap B", 4.0, 5.1, "drag")
 
 
 def match(s):

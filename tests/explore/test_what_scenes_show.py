@@ -432,3 +432,15 @@ def test_the_story_goes_anywhere_ring_two_places_here():
         assert list(shares)[:3] == ["anywhere", "a ring", "two places"]
         assert shares["anywhere"] < 0.1 and shares["a ring"] < 0.3
     assert ends >= 20
+
+
+def test_reports_pay_what_the_belief_promises():
+    """The mean's squared error is the trace of the covariance, within and between heaps."""
+    s = scene("estimates", seed=4)
+    s.hold("heap A", 4.0, 1.0, "drag")
+    s.hold("heap B", 4.0, 5.0, "drag")
+    for _ in range(400):
+        s.step()
+    promised = 2 * 0.4**2 + 0.65 * 0.35 * 4.0**2
+    assert s.price("mean")[0] == pytest.approx(promised, rel=0.1)
+    assert s.price("mean")[0] < s.price("mode")[0] and s.price("mean")[2] > s.price("mode")[2]

@@ -80,3 +80,14 @@ def test_share_must_be_positive():
     for share in (0.0, 1.5, -0.1):
         with pytest.raises(pf.ParameterError):
             pf.top_share_mean(cloud(), share)
+
+
+def test_headings_that_cancel_have_no_mean():
+    bel = pf.from_weights(np.array([[0.0, 2], [0, 0], [0.4, 0.4 - np.pi]]))
+    mean = pf.mean_pose(bel)
+    assert mean[0] == 1 and np.isnan(mean[2])
+    assert np.isnan(pf.covariance(bel)[2]).all() and pf.covariance(bel)[0, 0] == pytest.approx(1)
+    nearly = pf.Particles(bel.state, np.log([0.5 + 1e-6, 0.5 - 1e-6]))
+    assert pf.mean_pose(nearly)[2] == pytest.approx(0.4)
+    with pytest.raises(pf.PfkitError, match=r"finite"):
+        pf.roughen(bel, rng())

@@ -63,3 +63,19 @@ def test_bad_cells_are_named(cell):
 def test_batches_are_refused():
     with pytest.raises(pf.ShapeError, match="one set"):
         pf.clusters(pf.from_weights(np.ones((3, 2, 9))))
+
+
+def test_covariances_add_up_to_that_of_the_cloud():
+    state = np.hstack((heap((2, 2, 0), 200, 0), heap((8, 2, 1), 500, 1, 0.3)))
+    bel = pf.from_weights(state, np.random.default_rng(2).random(700))
+    found = pf.clusters(bel)
+    off = found.mean[:2] - pf.mean_pose(bel)[:2, None]
+    within = np.einsum("c,ijc->ij", found.mass, found.covariance[:2, :2])
+    between = np.einsum("c,ic,jc->ij", found.mass, off, off)
+    np.testing.assert_allclose(within + between, pf.covariance(bel)[:2, :2], rtol=1e-9)
+
+
+def test_each_heap_has_its_own_covariance_across_pi():
+    found = pf.clusters(pf.from_weights(heap((2, 2, np.pi), 4000, 0)), (2, 2, 1))
+    sd = np.sqrt(np.diag(found.covariance[:, :, 0]))
+    np.testing.assert_allclose(sd, (0.2, 0.2, 0.1), rtol=0.05)
