@@ -17,6 +17,8 @@ import nbformat
 import pytest
 from reader import Page
 
+from pfkit.explore import SCENES as SCENES_BY_NAME
+
 ROOT = Path(__file__).resolve().parents[2]
 SITE = ROOT / ".cache" / "live" / "site"
 
@@ -54,10 +56,12 @@ FILM = """# Films
 :caption: Four clouds, one after the other gone.
 ```
 """
+ALL = "# All\n\n" + "\n".join(f"```{{explorable}} {name}\n```\n" for name in SCENES_BY_NAME)
 LANGUAGE = {"language_info": {"name": "python", "pygments_lexer": "ipython3"}}
 PAGES = {
-    "index.md": "# Home\n\n```{toctree}\nscenes\nfilm\nplain\nlab\nafterwards\n```\n",
+    "index.md": "# Home\n\n```{toctree}\nscenes\nall\nfilm\nplain\nlab\nafterwards\n```\n",
     "scenes.md": SCENES,
+    "all.md": ALL,
     "film.md": FILM,
     "plain.md": "# Plain\n\nNothing lives here.\n",
 }
