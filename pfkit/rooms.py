@@ -66,10 +66,10 @@ CORE: dict[str, dict[str, str]] = {
     },
     "filters": {
         "filters.particle_filter": "Info predict resample step take update",
-        "filters.history": "History run",
         "filters.recovery": "Memory augmented_step inject poses_seeing",
-        "filters.kld": "kld_bound kld_count kld_step",
         "filters.tempering": "tempered_update",
+        "filters.history": "History run",
+        "filters.kld": "kld_bound kld_count kld_step",
     },
     "exact": {
         "exact.histogram": "door_likelihood predict_1d shift_kernel update_1d",

@@ -19,10 +19,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from pfkit.filters.particle_filter import Info, step
+from pfkit.filters.recovery import Memory, replaced
+from pfkit.filters.tempering import tempered_step
 from pfkit.models.motion import MotionModel
-from pfkit.models.sensors import SensorModel
+from pfkit.models.sensors import SensorModel, how_many
 from pfkit.particles.estimators import covariance, mean_pose
 from pfkit.particles.particle_set import Particles
+from pfkit.particles.priors import SamplesPoses
 from pfkit.particles.resampling import Resampler, systematic
 from pfkit.particles.triggers import Trigger
 from pfkit.worlds.log import Log
@@ -73,6 +76,8 @@ def run(
     scheme: Resampler = systematic,
     threshold: float | Trigger = 0.5,
     watch: Callable[[int, Particles, Info], object] | None = None,
+    temper: float = 0.0,
+    recover: SamplesPoses | None = None,
 ) -> History:
     """Run the filter along a log.
 
@@ -84,6 +89,12 @@ def run(
         As in `step`.
     watch : function (k, bel, info), optional
         Called after each step: for progress, film, or genealogy.
+    temper : float in [0, 1]
+        Weigh in stages that each keep this share of M as effective sample size
+        (`tempered_update`); 0 weighs plainly.
+    recover : LandmarkMap or OccupancyGrid, optional
+        Replace a share of the particles by new ones from this map when measurements become less
+        likely than they used to be (augmented MCL, see `recovery`).
 
     Returns
     -------
@@ -98,8 +109,15 @@ def run(
     estimate, spread = np.empty((D, T, *batch)), np.empty((D, D, T, *batch))
     ess, log_evidence = np.empty((T, *batch)), np.empty((T, *batch))
     resampled = np.zeros((T, *batch), dtype=bool)
+    memory = Memory()
     for k, (_, u, z, _) in enumerate(log):
-        bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold, k)
+        if temper == 0:
+            bel, info = step(bel, u, z, motion, sensor, rng, scheme, threshold, k)
+        else:
+            bel, info = tempered_step(bel, u, z, motion, sensor, rng, temper, scheme, threshold, k)
+        if recover is not None and how_many(z) > 0:
+            memory = memory.remember(info.log_evidence, how_many(z))
+            bel, info = replaced(bel, info, memory.share, recover, rng, scheme)
         log_evidence[k], ess[k], resampled[k] = info.log_evidence, info.ess, info.resampled
         estimate[:, k], spread[:, :, k] = mean_pose(bel), covariance(bel)
         if watch is not None:

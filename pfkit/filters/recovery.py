@@ -31,7 +31,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pfkit.densities import draw_normal
 from pfkit.errors import DataError, ParameterError, Shape, require_array, require_count
-from pfkit.filters.particle_filter import Info, step
+from pfkit.filters.particle_filter import Info, _resampled, step
 from pfkit.geometry import wrap
 from pfkit.models.landmark_sensors import RangeBearing
 from pfkit.models.motion import MotionModel
@@ -170,6 +170,41 @@ def poses_seeing(z: ArrayLike, sensor: RangeBearing, M: Shape, rng: np.random.Ge
     gamma = 2 * np.pi * rng.random(M)
     mx, my = sensor.world.locate(s)
     return np.stack((mx + r * np.cos(gamma), my + r * np.sin(gamma), wrap(gamma - np.pi - phi)))
+
+
+def replaced(
+    bel: Particles,
+    info: Info,
+    share: ArrayLike,
+    world: SamplesPoses,
+    rng: np.random.Generator,
+    scheme: Resampler = systematic,
+) -> tuple[Particles, Info]:
+    """Replace a share of the particles by poses from a map; filters with a share resample first.
+
+    Parameters
+    ----------
+    bel : Particles, as a step left them
+    info : Info of that step
+    share : float or (B,), in [0, 1]
+    world : LandmarkMap or OccupancyGrid
+    rng : numpy.random.Generator
+    scheme : Resampler
+
+    Returns
+    -------
+    Particles
+    Info, in which a replaced particle has ancestor -1
+    """
+    where = (np.asarray(share) > 0) & ~np.asarray(info.resampled)
+    if not np.any(np.asarray(share) > 0):
+        return bel, info
+    bel, ancestors = _resampled(bel, scheme, rng, bel.M, np.broadcast_to(where, bel.ess.shape))
+    bel, new = inject(bel, share, world.sample_poses, rng)
+    ancestors = np.take_along_axis(info.ancestors, ancestors, axis=-1)
+    resampled = np.asarray(info.resampled) | where
+    ancestors = np.where(new, -1, ancestors)
+    return bel, info._replace(resampled=resampled[()], ancestors=ancestors)
 
 
 def augmented_step(

@@ -29,12 +29,14 @@ from numpy.typing import ArrayLike, NDArray
 
 from pfkit.densities import draw_normal
 from pfkit.errors import require_array
-from pfkit.filters.particle_filter import take
+from pfkit.filters.particle_filter import Info, _resampled, predict, take, update
 from pfkit.geometry import wrap
+from pfkit.models.motion import MotionModel
 from pfkit.models.sensors import SensorModel, how_many
 from pfkit.particles.estimators import covariance
 from pfkit.particles.particle_set import Particles, ess, normalise
 from pfkit.particles.resampling import Resampler, systematic
+from pfkit.particles.triggers import Trigger, ess_below
 
 Array = NDArray[np.float64]
 CLOSE = 0.1  # the next exponent is sought to a tenth of itself
@@ -93,6 +95,45 @@ def tempered_update(
         if not (left > 0).any():
             return bel, stages
         bel = _spread_out(bel, left > 0, kernel, scheme, rng)
+
+
+def tempered_step(
+    bel: Particles,
+    u: ArrayLike,
+    z: ArrayLike | None,
+    motion: MotionModel,
+    sensor: SensorModel,
+    rng: np.random.Generator,
+    keep: ArrayLike = 0.5,
+    scheme: Resampler = systematic,
+    threshold: float | Trigger = 0.5,
+    k: int = 0,
+) -> tuple[Particles, Info]:
+    """One turn of the filter that weighs in stages: as `step`, with `tempered_update` inside.
+
+    Parameters
+    ----------
+    bel, u, z, motion, sensor, rng, scheme, threshold, k
+        As in `step`.
+    keep : float in [0, 1] or (B,), as in `tempered_update`
+
+    Returns
+    -------
+    Particles
+    Info
+        Its log evidence is that of plain weighting; what the stages moved has no ancestor that a
+        family tree could use.
+    """
+    trigger = threshold if callable(threshold) else ess_below(threshold)
+    bel = predict(bel, u, motion, rng)
+    _, log_evidence = update(bel, z, sensor)
+    bel, _ = tempered_update(bel, z, sensor, rng, keep, scheme=scheme)
+    ess = bel.ess
+    poor = np.zeros(np.shape(ess), dtype=bool)
+    if how_many(z) > 0:
+        poor |= np.asarray(trigger(bel, k), dtype=bool)
+    bel, ancestors = _resampled(bel, scheme, rng, bel.M, poor)
+    return bel, Info(log_evidence, ess, poor[()], ancestors)
 
 
 def _largest_step(log_w: Array, log_p: Array, wanted: Array, left: Array) -> Array:

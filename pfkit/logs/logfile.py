@@ -106,11 +106,6 @@ def read_log(folder: str | Path) -> Log:
     )
 
 
-def is_saved(folder: Path) -> bool:
-    """Whether `save_log` wrote the folder."""
-    return (folder / "steps.txt").is_file() or (folder / "measurements.txt").is_file()
-
-
 def _rig_text(rig: Rig) -> str:
     """A line for each part of a rig: its name, then what it is."""
     lines = [f"sensor {rig.sensor}", f"odometry {rig.odometry}", f"named {int(rig.named)}"]

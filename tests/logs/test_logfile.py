@@ -1,5 +1,9 @@
 """A log that is saved comes back as it was; a damaged folder is named."""
 
+import subprocess
+import sys
+from pathlib import Path
+
 import numpy as np
 import pytest
 
@@ -106,3 +110,9 @@ def test_a_damaged_folder_is_named(tmp_path, name, text, message):
     (tmp_path / name).write_text(text)
     with pytest.raises(pf.DataError, match=message):
         pf.read_log(tmp_path)
+
+
+@pytest.mark.parametrize("name", ["save_log", "read_log", "load_log"])
+def test_each_can_be_the_first_that_is_used(name):
+    code = f"import pfkit; pfkit.{name}"
+    subprocess.run([sys.executable, "-c", code], check=True, cwd=Path(__file__).parents[2])

@@ -25,7 +25,6 @@ from pfkit.logs.datasets.labyrinth import is_labyrinth, read_labyrinth
 from pfkit.logs.datasets.mrclam import is_mrclam, mrclam_files, read_mrclam
 from pfkit.logs.datasets.plaza import is_plaza, read_plaza
 from pfkit.logs.datasets.rosbag import bags, read_rosbag
-from pfkit.logs.logfile import is_saved, read_log
 from pfkit.worlds.log import Log
 
 __all__ = ["LAYOUTS", "Wanted", "find_folder", "load_log", "load_mrclam", "load_plaza"]
@@ -64,7 +63,13 @@ class Layout(NamedTuple):
     needs: str
 
 
+def _is_saved(folder: Path) -> bool:
+    return (folder / "steps.txt").is_file() or (folder / "measurements.txt").is_file()
+
+
 def _saved(folder: Path, wanted: Wanted) -> Log:
+    from pfkit.logs.logfile import read_log  # which reads its tables with this package's `text`
+
     log = read_log(folder)
     if wanted.need_truth and log.start is None:
         raise DataError(
@@ -105,7 +110,7 @@ def _rosbag(folder: Path, wanted: Wanted) -> Log:
 
 LAYOUTS = {
     "described": Layout(is_described, _described, "log.yaml, and the tables that it names"),
-    "saved": Layout(is_saved, _saved, "steps.txt and measurements.txt, as save_log writes them"),
+    "saved": Layout(_is_saved, _saved, "steps.txt and measurements.txt, as save_log writes them"),
     "MRCLAM": Layout(is_mrclam, _mrclam, "*_Odometry.dat, *_Measurement.dat, *Barcodes.dat"),
     "Plaza": Layout(is_plaza, _plaza, "odometry.txt, ranges.txt and beacons.txt"),
     "Labyrinth": Layout(is_labyrinth, _labyrinth, "*.txt with lines range2 and odom2diff"),
