@@ -26,10 +26,10 @@ def found(log, seeds, M, sensor=SENSOR, **options):
 
 
 def test_stages_find_the_robot_with_few_particles():
-    """Twenty particles for an arena, sharp sensor: 20 filters; plain weighting loses half."""
+    """Forty particles for an arena, sharp sensor: 20 filters; plain weighting loses a third."""
     log = drive(every=4)
-    assert found(log, 20, 20, temper=0.5) >= 18
-    assert found(log, 20, 20) <= 13
+    assert found(log, 20, 40, temper=0.5) >= 18
+    assert found(log, 20, 40) <= 16
 
 
 def test_recovery_finds_a_robot_that_was_carried_off():
