@@ -17,7 +17,7 @@ def _gates(rng):
     variance = 10 ** rng.uniform([-2.1, -1.5, 0.7, 0.0], [-1.8, -1.2, 1.3, 0.0])
     threshold = 10 ** rng.uniform([-4.3, -2.3, -4.5, -4.5], [-3.9, -1.8, -4.0, -4.0])
     variance[3] = rng.uniform(1.3, 2.0) / (2 * np.pi * threshold[3])  # its peak is too low
-    M = rng.integers([100, 100, 60, 60], [160, 160, 100, 100])
+    M = rng.integers([30, 100, 60, 60], [50, 160, 100, 100])
     chosen = zip(variance, threshold, M, strict=True)
     return [(float(f"{v:.3g}"), float(f"{t:.2g}"), int(m)) for v, t, m in chosen]
 
@@ -119,6 +119,11 @@ def always_1e_4(variance, threshold, M, rng, runs):
     lab.around(lab.film.start[:2], (runs, M), rng).""")
 def always_300(variance, threshold, M, rng, runs):
     return rejected(variance, threshold, 300, rng, runs)
+
+
+@rejected.refuses("a sensor believed a third wider than it is asked")
+def wider_sensor(variance, threshold, M, rng, runs):
+    return rejected(1.69 * variance, threshold, M, rng, runs)
 
 
 @rejected.refuses("the shares of the text")
