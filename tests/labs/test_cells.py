@@ -308,3 +308,30 @@ def test_int64_indices_are_left_alone_where_numpy_takes_them():
     assert (np.bincount, np.repeat, np.take) == before  # this machine has 64 bits
     assert wasm._narrow(np.array([1, 2], np.int64)).dtype == np.intp
     assert wasm._narrow([1.5]).dtype == float
+
+
+# -- what the page asks besides ----------------------------------------------------------------
+
+
+def test_a_students_own_questions_are_those_that_differ(cells):
+    from pfkit.labs.lab3 import LAB
+
+    try:
+        asked = json.loads(cells.student("lab3", "jo17", "spring"))
+        assert asked["p1b"] == LAB.items["p1b"].asked() != LAB.items["p1b"].origin.asked()
+        assert "p1a" not in asked, "options keep their order and their letters"
+        assert json.loads(cells.student("lab3", "", "")) == {}
+    finally:
+        LAB.forget()
+
+
+def test_worked_answers_and_reviews_are_the_labs(cells):
+    from pfkit.labs import spaced_review
+    from pfkit.labs.lab3 import LAB
+
+    assert cells.solution("lab3", "p5b") == LAB.items["p5b"].worked()
+    mine = spaced_review.problem(LAB, "p1b", 2)
+    assert cells.review("lab3", "p1b", 2) == mine.asked()
+    typed = ", ".join(map(str, mine.key))
+    assert json.loads(cells.reviewed("lab3", "p1b", 2, typed)) == [True, "right"]
+    assert json.loads(cells.reviewed("lab3", "p1b", 2, "what?"))[0] is False
