@@ -162,7 +162,7 @@ def test_what_the_table_allows_passes():
     source = "import math\nimport numpy as np\nfrom pfkit.models.motion import x"
     assert violations("filters.history", source) == []
     assert violations("labs.lab", "import pfkit as pf\ndef f():\n    import ipywidgets") == []
-    assert violations("labs.grade.bar", "import nbformat\nfrom pfkit.labs import controls") == []
+    assert violations("labs.grade.batch", "import nbformat\nfrom pfkit.labs import controls") == []
 
 
 def test_a_relative_import_is_refused():

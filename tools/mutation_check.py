@@ -124,7 +124,7 @@ MUTATIONS = [
     Mutation(
         "heading-mean",
         "particles.estimators",
-        "mean[2] = np.arctan2(_average(np.sin(theta), w), _average(np.cos(theta), w))",
+        "mean[2] = direction(_average(np.sin(theta), w), _average(np.cos(theta), w))",
         "mean[2] = _average(theta, w)",
         "particles/test_estimators filters/test_particle_filter",
     ),
