@@ -111,7 +111,7 @@
     if (busy) throw new Error("an answer is still running");
     const told = await python.ask({ do: "student", lab: lab.lab, who: "", term: "", ...student });
     const asked = JSON.parse(told);
-    for (const e of editors) if (asked[e.cell.item] !== e.own) e.askAnew();
+    for (const e of editors) if ((asked[e.cell.item] || "") !== e.own) e.askAnew();
     editors[0].isKept(store.writeStudent(student && { ...student, asked }));
     await tellPython();
     return showQuestions();

@@ -75,6 +75,7 @@ def test_numbers_of_ones_own_are_asked_judged_kept_and_exported(lab):
     question.wait_for()
     assert question.text_content() == f"Your question: {asked}"
     assert not lab.status("p1b"), "what was judged was another question"
+    assert lab.status("p3c") == "recorded", "what asks the same of all stays judged"
     lab.tab.reload()
     lab = Reader(lab.page)
     assert question.text_content() == f"Your question: {asked}"
