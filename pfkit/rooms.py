@@ -91,6 +91,8 @@ CORE: dict[str, dict[str, str]] = {
         "logs.driving": "drive",
         "logs.faults": "Outliers FieldOfView",
         "logs.simulate": "sense simulate_log",
+        "logs.least_squares": "",
+        "logs.seat": "",
         "logs.calibration": "Calibration calibrate",
         "logs.encoders": "WheelGeometry calibrate_wheels encoder_odometry square_turns",
     },

@@ -22,7 +22,6 @@ taken from another log is worse than none.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import combinations
 
@@ -31,7 +30,9 @@ from numpy.typing import NDArray
 
 from pfkit.errors import DataError, require_array
 from pfkit.geometry import between, wrap
+from pfkit.logs.least_squares import least_squares, slopes
 from pfkit.logs.odometry import Drift, Preintegrated
+from pfkit.logs.seat import Seat, fit_seat
 from pfkit.worlds.log import Log
 from pfkit.worlds.rig import Rig
 
@@ -42,6 +43,7 @@ ARM = 0.5  # metres per radian: what a heading error counts beside a position er
 NU = 4.0
 USUAL_DRIFT = Drift((0.02, 0, 0), (0.05, 0.05, 0.001))  # of commands that nobody calibrated
 LEAST_DRIFT = 0.002  # m^2 per metre: wheels that seem perfect on one part are not on the next
+MATTERS = np.array([0.02, 0.02, 0.01, np.inf])  # metres, radians: a smaller seat is left as stated
 FEWEST = 20  # errors of which a spread is taken
 SOON = 2.0  # seconds within which two errors count as consecutive
 MOST_ALIKE = 0.9  # the largest correlation that is believed: a factor of 4.4
@@ -64,6 +66,11 @@ class Calibration:
         Spread that is left of ranges and bearings, widened for errors that repeat; None: unknown.
     drift : Drift, optional
         What is left of the odometry's errors.
+    seat : Seat, optional
+        The sensor's mounting and clock as fitted, with standard errors. Only a mounting that is
+        certain, far enough to matter and told apart from the clock becomes `mount`.
+    sd : (float, float, float), standard errors of speed, turn and delay (s), optional
+    slip : (float, float), metres to the left per metre driven, and its standard error, optional
     """
 
     speed: float = 1.0
@@ -74,6 +81,9 @@ class Calibration:
     mount: tuple[float, float, float] | None = None
     sigma: tuple[float | None, float | None] = (None, None)
     drift: Drift | None = None
+    seat: Seat | None = None
+    sd: tuple[float, float, float] | None = None
+    slip: tuple[float, float] | None = None
 
     def __post_init__(self) -> None:
         for name in ("speed", "turn", "delay", "bearing_bias", "range_bias"):
@@ -86,13 +96,23 @@ class Calibration:
     def __str__(self) -> str:
         parts = []
         if (self.speed, self.turn, self.delay) != (1.0, 1.0, 0.0):
-            parts.append(f"speed x {self.speed:.3f}, turn x {self.turn:.3f}")
-            parts.append(f"delay {self.delay:.2f} s")
+            speed, turn, delay = (
+                "" if sd is None else f" +- {sd:.3f}" for sd in self.sd or [None] * 3
+            )
+            parts.append(f"speed x {self.speed:.3f}{speed}, turn x {self.turn:.3f}{turn}")
+            parts.append(f"delay {self.delay:.2f}{delay} s")
+        if self.slip is not None:
+            parts.append(
+                f"sideways slip {self.slip[0]:+.3f} +- {self.slip[1]:.3f} m/m (or a truth "
+                "whose heading is off by as many radians: no drive tells these apart)"
+            )
         if self.bearing_bias:
             parts.append(f"bearing bias {self.bearing_bias:+.4f} rad")
         if np.ndim(self.range_bias):
             metres = ", ".join(f"{b:+.2f}" for b in np.asarray(self.range_bias))
             parts.append(f"range bias {metres} m")
+        if self.seat is not None:
+            parts.append(str(self.seat))
         return ", ".join(parts) or "nothing"
 
 
@@ -133,7 +153,21 @@ def fit_odometry(log: Log) -> Calibration:
             f"calibration found speed x {speed:.2f}, turn x {turn:.2f}, delay {delay:.2f} s: "
             "truth and odometry do not describe the same drive; calibrate on another part"
         )
-    return Calibration(float(speed), float(turn), float(delay))
+    p = np.array([speed, turn, delay])
+    left = error(p)[:, agree]
+    J = slopes(lambda p: error(p)[:, agree].ravel(), p)
+    overlap = WINDOW / STRIDE  # windows share most of what they saw
+    sd = np.sqrt(overlap * np.mean(left**2) * np.diag(np.linalg.inv(J.T @ J)))
+    way = np.hypot(*truth[:2, agree])
+    slip = float((left[1] * way).sum() / (way**2).sum())
+    slip_sd = float(np.sqrt(overlap * np.mean((left[1] - slip * way) ** 2) / (way**2).sum()))
+    return Calibration(
+        float(speed),
+        float(turn),
+        float(delay),
+        sd=(float(sd[0]), float(sd[1]), float(sd[2])),
+        slip=(slip, slip_sd),
+    )
 
 
 def fit_bearing_bias(log: Log) -> float:
@@ -190,9 +224,45 @@ def calibrate(log: Log) -> Calibration:
     rig = log.rig or Rig("range-bearing")
     if rig.sensor == "range":
         found = Calibration(range_bias=fit_range_bias(log))
-    else:
-        found = replace(fit_odometry(log), bearing_bias=fit_bearing_bias(log))
-    return replace(found, sigma=_sigmas(log, found), drift=fit_drift(found.apply(log)))
+        return replace(found, sigma=_sigmas(log, found), drift=fit_drift(log))
+    found = fit_odometry(log) if rig.odometry == "speeds" else Calibration()
+    if rig.named:
+        found = _with_sensor(log, rig, found)
+    return replace(found, drift=fit_drift(found.apply(log)))
+
+
+def _with_sensor(log: Log, rig: Rig, found: Calibration) -> Calibration:
+    """Add what is fitted of a sensor: its seat; of landmarks also the bearing's bias and noise."""
+    seat = None if log.rig is None else fit_seat(log)
+    mount = None if seat is None else _believed(seat, rig)
+    if rig.sensor == "laser":
+        return replace(found, seat=seat, mount=mount)
+    if mount is not None and (any(mount) or rig.flipped):
+        x, y, _ = mount
+        log = _from_the_seat(log, (x, y, 0.0), rig.flipped)
+        mount = (x, y, 0.0)
+    found = replace(found, bearing_bias=fit_bearing_bias(log), seat=seat, mount=mount)
+    return replace(found, sigma=_sigmas(log, found))
+
+
+def _believed(seat: Seat, rig: Rig) -> tuple[float, float, float]:
+    """The mounting: as fitted where that is certain and far enough to matter, else as stated."""
+    stated = np.append(rig.mount, 0.0)
+    off = seat.value - stated
+    sure = (np.abs(off) > 3 * seat.sd) & (np.abs(off) > MATTERS) & ~seat.confused
+    x, y, yaw = np.where(sure, seat.value, stated)[:3]
+    return float(x), float(y), float(yaw)
+
+
+def _from_the_seat(log: Log, mount: tuple[float, float, float], flipped: bool) -> Log:
+    """The log of the sensor itself: its own poses as truth, and its bearings the right way up."""
+    x, y, theta = log.truth  # type: ignore[misc]
+    c, s = np.cos(theta), np.sin(theta)
+    seat = np.stack((x + c * mount[0] - s * mount[1], y + s * mount[0] + c * mount[1], theta))
+    row = log.rig.rows.index("bearing")  # type: ignore[union-attr]
+    sign = np.ones((len(log.rig.rows), 1))  # type: ignore[union-attr]
+    sign[row] = -1.0 if flipped else 1.0
+    return replace(log, truth=seat, z=[sign * zk for zk in log.z])
 
 
 def fit_drift(log: Log) -> Drift:
@@ -314,20 +384,6 @@ def _measured(log: Log) -> tuple[NDArray[np.int64], Array]:
     if not known.any():
         raise DataError("no measurement has a known true pose here; calibrate on a longer part")
     return k[known], z[:, known]
-
-
-def slopes(error: Callable[[Array], Array], p: Array, h: float = 1e-3) -> Array:
-    """Derivatives (n, P) of an error (n,) by its parameters p (P,), as central differences."""
-    steps = h * np.eye(p.size)
-    return np.stack([(error(p + step) - error(p - step)) / (2 * h) for step in steps], axis=1)
-
-
-def least_squares(error: Callable[[Array], Array], start: Array, rounds: int = 8) -> Array:
-    """Gauss-Newton: linearise the error (n,) about the parameters, solve, repeat."""
-    p = start
-    for _ in range(rounds):
-        p = p - np.linalg.lstsq(slopes(error, p), error(p), rcond=None)[0]
-    return p
 
 
 def _robust_mean(values: Array) -> float:

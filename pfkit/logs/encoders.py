@@ -23,7 +23,7 @@ from numpy.typing import ArrayLike, NDArray
 
 from pfkit.errors import DataError, require_array, require_fields, require_number
 from pfkit.geometry import compose, wrap
-from pfkit.logs.calibration import least_squares, slopes
+from pfkit.logs.least_squares import least_squares, slopes
 
 Array = NDArray[np.float64]
 ORIGIN = (0.0, 0.0, 0.0)
