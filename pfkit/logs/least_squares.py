@@ -1,4 +1,10 @@
-"""Least squares for errors that are not linear: Gauss-Newton by differences."""
+"""Least squares for errors that are not linear in what is sought: the method of Gauss and Newton.
+
+Near a guess every smooth error is nearly linear. So replace it there by its tangent, solve that
+linear problem exactly, move to its solution, and do it again. A few rounds are enough where the
+guess is good; a bad one may end in another valley, so begin with the best of several. The tangent
+needs derivatives, and central differences give them without a formula for each model.
+"""
 
 from __future__ import annotations
 
