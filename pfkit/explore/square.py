@@ -31,7 +31,7 @@ class Square(Scene):
     rate = 16.0
     record_steps = 192
     record_every = 2
-    still_at = 40
+    still_at = 136
     gauges: ClassVar[dict[str, Gauge]] = {
         "miss": Gauge("cm", 1),
         "ahead": Gauge("cm", 1),
@@ -212,11 +212,11 @@ class Square(Scene):
             pen.robots(style, *path[:, self.row], radius=0.2)
         pen.symbols("exact", "diamond", 0.0, 0.0, size=9)
         pen.text("ink", -1.4, high - 0.25, "solid: the robot, dashed: its books", size=11)
-        pen.view((0.64, 0.10, 0.34, 0.78), (-CHART, CHART), (-CHART, CHART), equal=True)
+        pen.view((0.64, 0.19, 0.34, 0.612), (-CHART, CHART), (-CHART, CHART))
         pen.segments("muted", (-CHART, 0), (0, -CHART), (CHART, 0), (0, CHART), width=1)
         for way, style, shape in (("ccw", "estimate", "circle"), ("cw", "measurement", "square")):
             ends = np.array([(x, y) for w, x, y in self.ends if w == way]).reshape(-1, 2).T
             if ends.size:
                 pen.symbols(style, shape, *np.clip(ends, -CHART, CHART), size=8)
-        pen.text("ink", -CHART, CHART + 0.06, "where squares end: o left, square right", 11)
-        pen.text("ink", 0.05 - CHART, 0.05 - CHART, f"{100 * CHART:.0f} cm to the edge", size=10)
+        pen.text("ink", -CHART, CHART + 0.1, "where squares end: o ccw, square cw", 11)
+        pen.text("ink", 0.05 - CHART, 0.1 - CHART, f"{100 * CHART:.0f} cm to the edge", size=10)
