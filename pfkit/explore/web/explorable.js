@@ -30,6 +30,7 @@
       this.seed = options.seed;
       this.values = { ...options.values };
       this.initial = { ...this.values };
+      this.goal = null; // the tick that the reader scrubs to, until it is shown
       this.compared = null; // { name, value } of the second world's control
       this.history = [];
       this.pending = [];
@@ -331,6 +332,7 @@
       const operations = this.pending;
       this.pending = [];
       operations.forEach((operation) => this.note(operation));
+      if (on || operations.some(([kind]) => kind !== "back")) this.goal = null;
       if (on) {
         this.trim();
         operations.push(on);
@@ -348,9 +350,13 @@
       this.show(drawing, report);
       for (const sentence of report.told || []) this.hear(sentence);
       this.missions.judge(report.done);
-      this.transport.show(report.ticks, report.kept);
+      if (this.goal === null || this.goal === report.ticks) { // else the bar is ahead of the answer
+        this.goal = null;
+        this.transport.show(report.ticks, report.kept);
+      }
       if (ended && this.transport.byPhase && report.phase.name) {
         this.transport.ended();
+        this.tell(report);
         this.say(this.sentence());
       }
       if (this.playing) this.transport.pace(report.ticks, ms);
@@ -440,6 +446,7 @@
         this.position = Math.min(this.frames.length - 1, tick / this.every);
         this.showRecorded();
       } else if (this.mode === "live") {
+        this.goal = tick;
         this.push(["back", tick], (last) => last[0] === "back");
         this.idle().then(() => this.say(this.sentence()));
       } else this.touch(undefined, control);
