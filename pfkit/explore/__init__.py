@@ -40,6 +40,7 @@ SCENES = {
     "office": ("pfkit.explore.office", "Office"),
     "story": ("pfkit.explore.story", "Story"),
     "proposal": ("pfkit.explore.proposal", "Proposal"),
+    "tuning": ("pfkit.explore.tuning", "Tuning"),
     "square": ("pfkit.explore.square", "Square"),
 }
 

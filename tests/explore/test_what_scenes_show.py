@@ -444,3 +444,11 @@ def test_reports_pay_what_the_belief_promises():
     promised = 2 * 0.4**2 + 0.65 * 0.35 * 4.0**2
     assert s.price("mean")[0] == pytest.approx(promised, rel=0.1)
     assert s.price("mean")[0] < s.price("mode")[0] and s.price("mean")[2] > s.price("mode")[2]
+
+
+def test_tuning_is_cheapest_at_the_truth_only_with_the_right_model():
+    wrong, right = scene("tuning", seed=1), scene("tuning", seed=1)
+    right.set("model", "moves")
+    i_wrong, i_right = (s.surface.min(axis=0).argmin() for s in (wrong, right))
+    assert i_right < i_wrong  # less process noise
+    assert right.surface.min() < 0.6 * wrong.surface.min() < 0.3
