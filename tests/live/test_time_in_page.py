@@ -49,7 +49,7 @@ def test_all_that_belongs_together_is_on_the_screen_together(open_page, width, h
         for name, above, below, wide in page.tab.evaluate(TOGETHER, root):
             assert above >= 0 and below >= 0 and wide, (number, name, above, below)
         stage = page.tab.locator(".pf-stage").nth(number).bounding_box()
-        assert stage["height"] >= 250
+        assert stage["height"] >= 200
     page.tab.context.close()
 
 
