@@ -1,8 +1,11 @@
 """Named errors, and the few checks that raise them.
 
-Every public function checks its input once, at the boundary, and says three things:
-what was wrong, the value it got, and the remedy. All errors derive from `PfkitError`,
-which is a `ValueError`, so ``except ValueError`` still works for those who prefer it.
+An object is validated when it is made, by `require_fields` and `require_array`. A function checks
+at its boundary what NumPy would silently stretch or lose, and what a student's own model returned.
+Who draws random numbers looks at the generator. What fails clearly by itself, such as None where a
+sensor should be, needs no check. An error of ours says three things: what was wrong, the value it
+got, and the remedy. All derive from `PfkitError`, which is a `ValueError`, so ``except ValueError``
+still works for those who prefer it.
 
 A crash is the lesser evil. NumPy stretches arrays until they fit, so particles stored as
 ``(M, 3)``, a standard deviation with one sign too many or a covariance that is none often run

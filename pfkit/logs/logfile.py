@@ -26,7 +26,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from pfkit.errors import DataError, require_count
+from pfkit.errors import DataError, ShapeError, require_count
 from pfkit.logs.datasets.text import read_table
 from pfkit.worlds.log import Log
 from pfkit.worlds.maps import LandmarkMap
@@ -51,11 +51,13 @@ def save_log(log: Log, folder: str | Path, digits: int = 17) -> None:
     ShapeError
         If the log holds a batch.
     """
+    if log.u.ndim != 2:
+        raise ShapeError(f"only single drives can be saved, got u {log.u.shape}; pick one run")
     require_count("digits", digits)
     folder = Path(folder)
-    folder.mkdir(parents=True, exist_ok=True)
     rows = [log.t[None], log.u] + ([] if log.truth is None else [log.truth])
     names = ["time", *_numbered("u", log.u), *_numbered("x", log.truth)]
+    folder.mkdir(parents=True, exist_ok=True)
     _write(folder / "steps.txt", names, np.concatenate(rows), digits, log.source)
     _write(folder / "measurements.txt", *_flatten(log), digits)
     if log.start is not None:

@@ -81,7 +81,7 @@ def test_a_batch_is_refused(tmp_path):
         batch=2,
         steps=3,
     )
-    with pytest.raises(ValueError, match="same number of dimensions"):
+    with pytest.raises(pf.ShapeError, match="single"):
         pf.save_log(log, tmp_path)
 
 
