@@ -5,6 +5,8 @@
 * Tables scroll by themselves on a narrow screen instead of pushing the page wide.
 * Search from a folder on disk lists results without summaries: a browser does not let a page read
   its neighbours there.
+* Text does not wait for scripts: icons need none, search is loaded by its own page, the rest comes
+  after the text. Without JavaScript a line says what is missing.
 * The front page sits in book/, so the top of the site forwards to it.
 
 It works on the finished HTML, because the theme offers no setting for these; each mend is a pattern
@@ -18,6 +20,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 from sphinx.application import Sphinx
+from sphinx.config import Config
 from sphinx.util import logging
 
 logger = logging.getLogger(__name__)
@@ -127,8 +130,15 @@ def mend_pages(app: Sphinx, error: Exception | None) -> None:
         (top / "index.html").write_text(forward, encoding="utf-8", newline="\n")
 
 
+def unnumbered(app: Sphinx, config: Config) -> None:
+    """Figures bear no number, since nothing refers to one; sphinx_proof would have them do."""
+    config.numfig = False
+
+
 def setup(app: Sphinx) -> dict[str, bool]:
     """Register the mends."""
+    app.connect("config-inited", unnumbered, priority=900)
     app.add_js_file(None, body=NO_SUMMARY_ON_DISK)
+    app.add_js_file("scroll.js", defer="defer")
     app.connect("build-finished", mend_pages, priority=900)
     return {"parallel_read_safe": True, "parallel_write_safe": True}

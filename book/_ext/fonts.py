@@ -15,6 +15,7 @@ def cut(source: Path, characters: Iterable[str], target: Path) -> None:
     options.recalc_timestamp = False
     options.notdef_outline = True
     options.layout_features = []
+    options.drop_tables += ["FFTM"]  # when FontForge wrote it
     font = subset.load_font(str(source), options)
     cutter = subset.Subsetter(options)
     cutter.populate(text="".join(characters))

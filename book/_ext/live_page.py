@@ -59,7 +59,8 @@ ROOT = Path(__file__).resolve().parent.parent.parent
 CACHE = ROOT / ".cache" / "live"
 SITE = CACHE / "site"
 SCRIPTS = ("keys.js", "palette.js", "operations.js", *FRONT_END, "page.js")
-LAB_SCRIPTS = ("store.js", "choices.js", "afterwards.js", "student.js", "review.js", "lab.js")
+# ... and store.js, which every page loads (tasks.py)
+LAB_SCRIPTS = ("choices.js", "afterwards.js", "student.js", "review.js", "lab.js")
 STUB = re.compile(r"^(\w+) = \.\.\.\s*(#.*)?$")  # an answer cell that waits for a letter
 
 
@@ -89,7 +90,8 @@ class Explorable(SphinxDirective):
         if not alt:
             raise self.error(f"explorable {name}: give :alt:, a still needs a text")
         key = f"{name}-{about['panel']}-{seed}"
-        used = _pages(self.env).setdefault(self.env.docname, {"runs": {}})["runs"]
+        page = _pages(self.env).setdefault(self.env.docname, {"runs": {}})
+        used = page["runs"]
         ident = self.options.get("name") or f"explorable-{key}" + (
             f"-{list(used).index(key) + 2}" if key in used else ""
         )
@@ -100,6 +102,7 @@ class Explorable(SphinxDirective):
         )
         self.set_source_info(node)
         if about["missions"] and not caption:
+            page.setdefault("missions", {})[f"{name}/{about['panel']}"] = len(about["missions"])
             missions = nodes.enumerated_list(classes=["pf-missions"])
             for mission in about["missions"]:
                 missions += nodes.list_item("", nodes.paragraph(text=mission["text"]))

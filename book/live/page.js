@@ -34,7 +34,46 @@
     return bundle;
   }
 
-  /* One worker with Python in it. `ask` sends a request and waits for its answer. */
+  /* The network in one sentence: browsers name a cut connection in many ways, none for readers. */
+  function cut(name, signal) {
+    throw signal.aborted ? signal.reason : new Error(`${name}: the connection was cut`);
+  }
+
+  async function request(name, signal) {
+    const address = `${BASE}${name}?v=${VERSION}`;
+    const response = await fetch(address, { signal }).catch(() => cut(name, signal));
+    if (!response.ok) throw new Error(`${name} could not be fetched (${response.status})`);
+    return response;
+  }
+
+  /* One file of Python from a web host; `onBytes` hears how much of it is there. */
+  async function download(name, size, signal, onBytes) {
+    const response = await request(name, signal);
+    const reader = response.body.getReader(), whole = new Uint8Array(size);
+    let got = 0;
+    for (;;) {
+      const { done, value } = await reader.read().catch(() => cut(name, signal));
+      if (done) break;
+      if (got + value.length > size) cut(name, signal);
+      whole.set(value, got);
+      onBytes(name, got += value.length);
+    }
+    if (got !== size) cut(name, signal);
+    return whole.buffer;
+  }
+
+  /* Whether a shared worker may outlive its page here: a browser that can asks for the option. */
+  function outlives() {
+    let asked = false;
+    const options = { get extendedLifetime() { asked = true; return true; } };
+    try { new SharedWorker("data:text/javascript,", options); } catch { /* none, or not like this */ }
+    return asked;
+  }
+
+  /* One worker with Python in it. `ask` sends a request and waits for its answer. That of lab cells
+     (kind "cells") belongs to the page, so that Stop can end it. That of explorables (kind "scenes")
+     is, where the browser lets it, shared by the pages of the book and lives on while the reader goes
+     from one to the next, so that Python starts once. */
   PF.Python = class {
     constructor(kind) {
       this.kind = kind;
@@ -61,22 +100,26 @@
     async boot() {
       if (!LIVE) throw new Error("this copy of the book was built without the parts that compute");
       const began = performance.now();
-      const message = { kind: this.kind, base: BASE, version: VERSION };
-      let url = `${BASE}worker.js?v=${VERSION}`;
-      if (FROM_FOLDER) {
-        this.progress("Reading Python from the folder", 0.05);
-        await loadBundle();
-        const names = Object.keys(window.pfBundle);
-        message.files = {};
-        for (const [k, name] of names.entries()) {
-          message.files[name] = await unpack(window.pfBundle[name]);
-          this.progress("Unpacking Python", 0.1 + (0.6 * (k + 1)) / names.length);
-        }
-        url = URL.createObjectURL(new Blob([message.files["worker.js"]], { type: "text/javascript" }));
-      } else this.progress("Loading Python", 0, true);
-      this.worker = new Worker(url);
-      this.worker.onmessage = ({ data }) => {
-        if (data.progress) return this.progress(data.progress, data.fraction, data.loading);
+      const files = FROM_FOLDER ? await this.fromFolder() : null;
+      this.connect(files
+        ? URL.createObjectURL(new Blob([files["worker.js"]], { type: "text/javascript" }))
+        : `${BASE}worker.js?v=${VERSION}`);
+      this.kept = this.shared && await this.send({ do: "hello" });
+      if (!this.kept) {
+        const have = files || await this.fromHost();
+        await this.send({ do: "boot", kind: this.kind, files: have }, Object.values(have));
+      }
+      this.bootMs = performance.now() - began;
+    }
+
+    connect(url) {
+      this.shared = this.kind === "scenes" && !FROM_FOLDER && outlives();
+      this.worker = this.shared ? new SharedWorker(url, { name: this.kind, extendedLifetime: true })
+        : new Worker(url);
+      this.port = this.worker.port || this.worker;
+      this.port.onmessage = ({ data }) => {
+        if (data.progress) return this.progress(data.progress, data.fraction);
+        if (data.ended) return this.stop(data.ended);
         const waiting = this.waiting.get(data.id);
         this.waiting.delete(data.id);
         if (!waiting) return;
@@ -87,15 +130,39 @@
         for (const w of this.waiting.values()) w.reject(new Error(e.message || "it could not be loaded"));
         this.waiting.clear();
       };
-      await this.send({ do: "boot", ...message }, Object.values(message.files || {}));
-      this.bootMs = performance.now() - began;
+    }
+
+    async fromFolder() {
+      this.progress("Reading Python from the folder", 0.05);
+      await loadBundle();
+      const names = Object.keys(window.pfBundle), files = {};
+      for (const [k, name] of names.entries()) {
+        files[name] = await unpack(window.pfBundle[name]);
+        this.progress("Unpacking Python", 0.1 + (0.6 * (k + 1)) / names.length);
+      }
+      return files;
+    }
+
+    async fromHost() {
+      this.progress("Loading Python", 0, true);
+      this.abort = new AbortController();
+      const { signal } = this.abort, list = await request("manifest.json", signal);
+      const sizes = await list.json(), names = Object.keys(sizes), have = {};
+      const sum = (record) => Object.values(record).reduce((a, b) => a + b, 0), total = sum(sizes);
+      const onBytes = (name, got) => {
+        have[name] = got;
+        const mb = (bytes) => (bytes / 1e6).toFixed(1), now = sum(have);
+        this.progress(`Loading Python: ${mb(now)} of ${mb(total)} MB`, (0.7 * now) / total, now < total);
+      };
+      const parts = await Promise.all(names.map((n) => download(n, sizes[n], signal, onBytes)));
+      return Object.fromEntries(names.map((n, k) => [n, parts[k]]));
     }
 
     send(message, transfer) {
       return new Promise((resolve, reject) => {
         const id = this.next++;
         this.waiting.set(id, { resolve, reject });
-        this.worker.postMessage({ id, ...message }, transfer || []);
+        this.port.postMessage({ id, ...message }, transfer || []);
       });
     }
 
@@ -104,17 +171,27 @@
       return this.send(message);
     }
 
-    /* The only way to end a loop in Python: end the worker. The next request boots another. */
+    /* The only way to end a loop in Python: end the worker. The next request boots another. A shared
+       one runs no code of readers; this page only takes its leave of it. */
     stop(reason) {
       clearTimeout(this.alarm);
-      if (this.worker) this.worker.terminate();
+      if (this.abort) this.abort.abort(new Error(reason || "stopped"));
+      if (this.worker && this.shared) this.leave();
+      else if (this.worker) this.worker.terminate();
       for (const w of this.waiting.values()) w.reject(new Error(reason || "stopped"));
       this.waiting.clear();
-      this.ready = this.worker = null;
+      this.ready = this.worker = this.port = null;
+    }
+
+    leave() {
+      if (!this.port || !this.shared) return;
+      this.port.postMessage({ do: "leave" });
+      this.port.close();
     }
   };
 
   const scenes = new PF.Python("scenes");
+  addEventListener("pagehide", ({ persisted }) => { if (!persisted) scenes.leave(); });
   async function drawn(message) {
     const answer = await scenes.ask(message);
     return { ...answer, report: JSON.parse(answer.report) };

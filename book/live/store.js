@@ -1,4 +1,7 @@
-/* What a reader answered, kept in this browser: one record per answer, seen by all tabs.
+/* What a reader did, kept in this browser and seen by all tabs; each key begins with ROOT.
+   Answers: one record each, in a store for each lab. Ticks of missions: a list of deeds for each
+   panel, under "missions/". Where the reader was: under "here".
+
    A record is { source, version, judged, hints }, judged the verdict on some source, hints how many
    checks gave one. All that belongs to the lab lies under a name with a star. Beside it, under
    "item/aside", lies the text of a tab that found another text in its place, and under "item/old"
@@ -6,10 +9,14 @@
 (function (PF) {
   "use strict";
 
+  const ROOT = "where-am-i/1/";
+  const GOOD = ["passed", "recorded", "predicted"]; // verdicts after which a question is done
+  const LONGEST = 200000; // characters of one entry of an imported file
+
   PF.Store = class {
     constructor(lab) {
       this.lab = lab;
-      this.place = `where-am-i/1/${lab}/`;
+      this.place = `${ROOT}${lab}/`;
     }
 
     /* Take over what was kept when the lab had another name, unless it was kept again since. */
@@ -105,6 +112,72 @@
       addEventListener("storage", ({ key, newValue }) => {
         if (key && key.startsWith(this.place)) hear(key.slice(this.place.length), newValue);
       });
+    }
+
+    /* Whether the present answer to this version of a question has passed, or is locked. */
+    done(item, version) {
+      const record = this.read(item), judged = record && record.judged;
+      const passed = judged && record.version === version && judged.source === record.source
+        && GOOD.includes(judged.status);
+      return Boolean(passed) || Object.hasOwn(this.predictions(), item);
+    }
+
+    /* The value under a key of the course that holds no answer, or null. */
+    static get(name) {
+      try {
+        return JSON.parse(localStorage.getItem(ROOT + name));
+      } catch {
+        return null;
+      }
+    }
+
+    static set(name, value) {
+      try {
+        localStorage.setItem(ROOT + name, JSON.stringify(value));
+        return true;
+      } catch {
+        return false;
+      }
+    }
+
+    static missions(panel) {
+      const deeds = PF.Store.get(`missions/${panel}`);
+      return Array.isArray(deeds) ? deeds : [];
+    }
+
+    /* All that this browser keeps of the course, as it is kept: { name: text }. */
+    static everything() {
+      try {
+        const keys = Object.keys(localStorage).filter((key) => key.startsWith(ROOT)).sort();
+        return Object.fromEntries(keys.map((key) => [key.slice(ROOT.length), localStorage.getItem(key)]));
+      } catch {
+        return {};
+      }
+    }
+
+    /* Take in what `everything` gave elsewhere. Nothing here is overwritten: ticks and locks are
+       joined, and another answer to a question lies beside the one that stands here, as after a
+       conflict of two tabs. Returns how many entries were new, or laid beside. */
+    static takeIn(kept) {
+      const count = { added: 0, beside: 0 };
+      for (const [name, text] of Object.entries(kept)) {
+        if (typeof text !== "string" || text.length > LONGEST) continue;
+        let theirs;
+        try { theirs = JSON.parse(text); } catch { continue; }
+        const mine = PF.Store.get(name);
+        if (mine === null) count.added += PF.Store.set(name, theirs);
+        else if (name.startsWith("missions/") && Array.isArray(theirs)) {
+          PF.Store.set(name, [...new Set([...PF.Store.missions(name.slice(9)), ...theirs])]);
+        } else if (name.endsWith("*predictions") && theirs && typeof theirs.predictions === "object") {
+          const predictions = { ...theirs.predictions, ...mine.predictions };
+          PF.Store.set(name, { ...mine, predictions });
+        } else if (name.endsWith("*ticks") && theirs && typeof theirs === "object") {
+          PF.Store.set(name, { ...theirs, ...mine });
+        } else if (PF.Store.record(text) && theirs.source !== mine.source && !name.endsWith("/old")) {
+          if (PF.Store.get(`${name}/aside`) === null) count.beside += PF.Store.set(`${name}/aside`, theirs);
+        }
+      }
+      return count;
     }
   };
 })((globalThis.PF = globalThis.PF || {}));

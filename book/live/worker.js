@@ -1,56 +1,18 @@
 /* Python in a worker. Two kinds of page part use it, each with a worker of its own: explorables
    (kind "scenes") and lab cells (kind "cells"), so that a reader's endless loop stops only itself.
+   One of scenes may be shared by several pages (see page.js): each is a client with its own runs.
 
-   Messages in: { id, do, ... }; out: { id, ok | error } and { progress, fraction, loading }, the last
-   true while bytes are expected from the network.
-   On a web host the files are fetched; from a folder the page hands them over as ArrayBuffers. */
+   Messages in: { id, do, ... }; out: { id, ok | error }, { progress, fraction }, and { ended } when
+   a shared worker is of no more use. The page hands over all files as ArrayBuffers. */
 "use strict";
 
 const MOST = 1e9; // bytes: beyond it Python gets a MemoryError, and the machine keeps the rest
+const SHARED = "onconnect" in self;
 
-let python, host, cells;
+let python, host, cells, booting = null, clients = new Set(), met = 0;
 
-function tell(progress, fraction, loading) { postMessage({ progress, fraction, loading }); }
-
-/* The network in one sentence: browsers name a cut connection in many ways, none for readers. */
-function cut(name) { return () => { throw new Error(`${name}: the connection was cut`); }; }
-
-async function asked(base, version, name) {
-  const response = await fetch(`${base}${name}?v=${version}`).catch(cut(name));
-  if (!response.ok) throw new Error(`${name} could not be fetched (${response.status})`);
-  return response;
-}
-
-async function fetched(base, version, name, size, onBytes) {
-  const reader = (await asked(base, version, name)).body.getReader(), parts = [];
-  let got = 0;
-  for (;;) {
-    const { done, value } = await reader.read().catch(cut(name));
-    if (done) break;
-    parts.push(value);
-    got += value.length;
-    onBytes(name, got);
-  }
-  if (got !== size) cut(name)();
-  const whole = new Uint8Array(got);
-  let at = 0;
-  for (const part of parts) { whole.set(part, at); at += part.length; }
-  return whole.buffer;
-}
-
-async function collect({ base, version, files }) {
-  if (files) return files;
-  const sizes = await (await asked(base, version, "manifest.json")).json();
-  const total = Object.values(sizes).reduce((a, b) => a + b, 0), have = {};
-  const onBytes = (name, got) => {
-    have[name] = got;
-    const sum = Object.values(have).reduce((a, b) => a + b, 0);
-    tell(`Loading Python: ${(sum / 1e6).toFixed(1)} of ${(total / 1e6).toFixed(1)} MB`, (0.7 * sum) / total,
-      sum < total);
-  };
-  const names = Object.keys(sizes);
-  const buffers = await Promise.all(names.map((n) => fetched(base, version, n, sizes[n], onBytes)));
-  return Object.fromEntries(names.map((n, i) => [n, buffers[i]]));
+function tell(progress, fraction) {
+  for (const client of clients) client.port.postMessage({ progress, fraction });
 }
 
 function limitMemory() {
@@ -61,9 +23,8 @@ function limitMemory() {
   };
 }
 
-async function boot(message) {
+async function boot({ kind, files }) {
   limitMemory();
-  const files = await collect(message);
   const text = (name) => new TextDecoder().decode(files[name]);
   const types = { wasm: "application/wasm", json: "application/json", zip: "application/zip" };
   /* Pyodide asks for its files by address; whatever the address, it gets the bytes we hold. */
@@ -86,7 +47,7 @@ os.makedirs("${folder.extractDir}/notebooks", exist_ok=True)
 os.chdir("${folder.extractDir}/notebooks")`);
   tell("Importing pfkit", 0.9);
   python.runPython("from pfkit.explore.wasm import accept_int64; accept_int64()");
-  if (message.kind === "cells") {
+  if (kind === "cells") {
     cells = python.runPython("from pfkit.labs.cells import Cells; Cells()");
   } else host = python.runPython("import pfkit.explore.host as h; h.Host()");
   /* From here on nothing may be fetched: what the page computes stays in the page. */
@@ -120,11 +81,29 @@ function drawn(make) {
   return { drawing, report, ms: performance.now() - start };
 }
 
+/* A client that goes takes its runs along. */
+function leave(client) {
+  clients.delete(client);
+  for (const key of client.keys) {
+    host.runs.pop(key, undefined);
+    host.seeds.pop(key, undefined);
+  }
+}
+
+const own = (m, client) => `${client.name}/${m.key}`;
 const DO = {
-  boot,
-  open: (m) => host.open(m.key, m.name, m.panel, m.seed),
-  run: (m) => drawn(() => host.do(m.key, m.operations)),
-  many: (m) => drawn(() => host.many(m.key, m.ticks, m.again)),
+  hello: () => booting || false,
+  boot(m) {
+    booting = booting || boot(m);
+    return booting;
+  },
+  leave: (m, client) => leave(client),
+  open(m, client) {
+    client.keys.add(own(m, client));
+    return host.open(own(m, client), m.name, m.panel, m.seed);
+  },
+  run: (m, client) => drawn(() => host.do(own(m, client), m.operations)),
+  many: (m, client) => drawn(() => host.many(own(m, client), m.ticks, m.again)),
   cell: (m) => cells.run(m.cells, m.index),
   memory: () => python._module.HEAP8.length,
   progress: (m) => cells.progress(m.lab),
@@ -135,13 +114,30 @@ const DO = {
   solution: (m) => cells.solution(m.lab, m.item),
 };
 
-self.onmessage = async ({ data }) => {
+/* What is no error of Python's is the end of Python; the next page must not meet it. */
+function isEnd(error) {
+  return SHARED && !(python && error instanceof python.ffi.PythonError);
+}
+
+async function serve(client, data) {
   try {
-    const ok = await DO[data.do](data);
+    const ok = await DO[data.do](data, client);
     const transfer = ok && ok.drawing ? [ok.drawing.buffer] : [];
-    postMessage({ id: data.id, ok }, transfer);
+    client.port.postMessage({ id: data.id, ok }, transfer);
   } catch (error) {
     console.info(String(error.message || error)); // the whole traceback, for whoever looks
-    postMessage({ id: data.id, error: short(error) });
+    client.port.postMessage({ id: data.id, error: short(error) });
+    if (!isEnd(error)) return;
+    for (const other of clients) other.port.postMessage({ ended: short(error) });
+    self.close();
   }
-};
+}
+
+function meet(port) {
+  const client = { port, name: ++met, keys: new Set() };
+  clients.add(client);
+  port.onmessage = ({ data }) => serve(client, data);
+}
+
+if (SHARED) self.onconnect = ({ ports }) => meet(ports[0]);
+else meet(self);

@@ -63,7 +63,7 @@ def test_colours_alone_and_all_but_colours(tab, tmp_path):
 
 
 def test_a_large_page_is_seen(tab, tmp_path):
-    assert "kB of its own" in look(tab, tmp_path, GOOD.replace("Text", "Text " * 100_000))[-1]
+    assert "kB of its own" in look(tab, tmp_path, GOOD.replace("Text", "Text " * 150_000))[-1]
 
 
 def test_a_heavy_visit_is_seen_though_all_of_it_is_shared(tab, tmp_path):

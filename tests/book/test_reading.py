@@ -71,6 +71,7 @@ def test_code_has_14_px_and_fits_the_page(page, tab, book_address):
 def test_every_figure_has_a_caption(page, tab):
     tab.goto(f"{browser.HTML.as_uri()}/{page}")
     assert tab.evaluate(BARE) == []
+    assert tab.locator("figcaption .caption-number").count() == 0, "nothing refers to its number"
 
 
 def test_set_up_and_drawing_are_folded_and_the_code_that_teaches_is_not(chapter):

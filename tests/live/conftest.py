@@ -26,7 +26,7 @@ SITE = ROOT / ".cache" / "live" / "site"
 CONF = """
 import sys
 sys.path.insert(0, {extensions!r})
-extensions = ["myst_nb", "typeset", "live_page"]
+extensions = ["myst_nb", "typeset", "live_page", "tasks"]
 html_theme, html_title, root_doc = "sphinx_book_theme", "A small book", "index"
 nb_execution_mode, nb_ipywidgets_js = "off", {{}}
 html_math_renderer = "typeset"
@@ -57,13 +57,15 @@ FILM = """# Films
 ```
 """
 ALL = "# All\n\n" + "\n".join(f"```{{explorable}} {name}\n```\n" for name in SCENES_BY_NAME)
+CONTENTS = "scenes all film plain book/map lab afterwards".split()
 LANGUAGE = {"language_info": {"name": "python", "pygments_lexer": "ipython3"}}
 PAGES = {
-    "index.md": "# Home\n\n```{toctree}\nscenes\nall\nfilm\nplain\nlab\nafterwards\n```\n",
+    "index.md": "# Home\n\n```{toctree}\n" + "\n".join(CONTENTS) + "\n```\n",
     "scenes.md": SCENES,
     "all.md": ALL,
     "film.md": FILM,
     "plain.md": "# Plain\n\nNothing lives here.\n",
+    "book/map.md": "# Map\n\n| page |\n|---|\n| [The lab](../lab.ipynb) |\n",
 }
 
 
@@ -142,6 +144,7 @@ def site(tmp_path_factory) -> Path:
     conf = CONF.format(extensions=str(ROOT / "book" / "_ext"))
     notebooks = {"lab.ipynb": lab_notebook(), "afterwards.ipynb": afterwards_notebook()}
     for name, body in {**PAGES, "conf.py": conf, **notebooks}.items():
+        (source / name).parent.mkdir(exist_ok=True)
         (source / name).write_text(body, encoding="utf-8")
     out = source / "_build"
     built = subprocess.run(
