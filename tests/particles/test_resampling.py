@@ -284,3 +284,17 @@ def test_a_tooth_at_either_end_of_its_stratum_finds_a_particle_with_weight(share
         for size in (1, n):
             found = resampling._comb(w, n, np.full(size, share))
             assert found.min() >= 1 and found.max() <= M and found.size == n
+
+
+def test_a_comb_that_waits_lets_shares_drift_further():
+    """Log-weights of variance .25 a step, two clusters side by side: 4 N times the variance."""
+    N, runs, rng = 100, 8000, np.random.default_rng(0)
+    in_a = np.tile(np.arange(N) < N // 2, (runs, 1))
+    log_w, _ = pf.normalise(0.5 * np.sqrt(3) * rng.standard_normal((runs, N)))
+    waited = np.sum(np.exp(log_w) * in_a, axis=1).var() * 4 * N
+    for _ in range(3):
+        log_w, _ = pf.normalise(0.5 * rng.standard_normal((runs, N)))
+        in_a = np.take_along_axis(in_a, pf.systematic(np.exp(log_w), rng), axis=1)
+    each = in_a.mean(axis=1).var() * 4 * N
+    assert each == pytest.approx(3 * (np.exp(0.25) - 1), rel=0.06)
+    assert waited == pytest.approx(np.exp(0.75) - 1, rel=0.1) and waited > 1.1 * each
