@@ -32,6 +32,8 @@ def settle(page) -> None:
 
 
 def begin(page, seed: int = 3) -> None:
+    """The first explorable in sight (what nobody sees stands still), at rest, at its start."""
+    page.explorable(0)
     page.tab.evaluate(f"{page.x}.setPlaying(false), {page.x}.restart({seed})")
     settle(page)
     page.tab.wait_for_function(f"{page.x}.report.ticks === 0")
