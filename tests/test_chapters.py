@@ -45,7 +45,10 @@ LIMITS = {
     "experiments": (2, 10),
 }
 # (topic, what): (least, most, why)
-EXCEPTIONS: dict[tuple[str, str], tuple[int, int, str]] = {}
+EXCEPTIONS: dict[tuple[str, str], tuple[int, int, str]] = {
+    ("exact_beliefs", "words"): (2200, 4000, "two sittings: cells, then Kalman's filter"),
+    ("exact_beliefs", "code cells"): (12, 24, "two sittings"),
+}
 
 LAB_CALL = re.compile(r"\blab\.(check|use|predict|answer)\(\s*[\"']([\w.-]+)[\"']")
 

@@ -34,6 +34,7 @@ SCENES = {
     "comb": ("pfkit.explore.comb", "Comb"),
     "corridor": ("pfkit.explore.corridor", "Corridor"),
     "drive": ("pfkit.explore.drive", "Drive"),
+    "kalman": ("pfkit.explore.kalman", "Kalman"),
     "mower": ("pfkit.explore.mower", "Mower"),
     "estimates": ("pfkit.explore.estimates", "Estimates"),
     "exact": ("pfkit.explore.exact", "Exact"),

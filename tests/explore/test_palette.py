@@ -73,7 +73,7 @@ def test_words_are_readable_and_shapes_are_those_of_the_figures(name, panel):
         if op == "robots":
             assert bool(numbers[1]) == (style != "truth")
         if style == "landmarks":
-            assert op in ("symbols", "ellipses") or name == "corridor"
+            assert op in ("symbols", "ellipses") or name in ("corridor", "kalman")
 
 
 def test_every_style_is_used():
