@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 import pfkit as pf
 from pfkit.explore.pen import Pen
-from pfkit.explore.scene import Control, Gauge, Mission, Panel, Readouts, Scene
+from pfkit.explore.scene import Control, Gauge, Mission, Panel, Phases, Readouts, Scene
 
 Array = NDArray[np.float64]
 
@@ -111,7 +111,8 @@ class Kalman(Scene):
     panels: ClassVar[dict[str, Panel]] = {
         "kalman": Panel(
             "Gaussian beside grid",
-            tuple(c.name for c in all_controls),
+            ("sense", "width", "sigma_z", "move", "look"),
+            ("sigma_u", "auto"),
             missions=(
                 Mission(
                     "a mean where nobody is",
@@ -129,7 +130,7 @@ class Kalman(Scene):
                 Mission(
                     "too good for its cells",
                     "Take cells of a metre and a beacon of 20 cm or better. Then halve the cells "
-                    "until they lack less than a twenty-fifth of a nat. What does each halving cost?",
+                    "until they lack less than 0.04 nats. What does each halving cost?",
                     lambda s: (
                         s.values["sigma_z"] <= 0.2
                         and s.values["sense"] != "doors"
@@ -148,35 +149,49 @@ class Kalman(Scene):
         self.mean = sum(SPAN) / 2
         self.var = (SPAN[1] - SPAN[0]) ** 2 / 12
         self.robot = float(self.rng.uniform(1, 4))
-        self.forward, self.moved = True, True
+        self.forward, self.last = True, ""
         self.looks, self.report = 0, ""
         self._measure()
 
-    def advance(self) -> None:
-        if self.values["auto"]:
-            self._look() if self.moved else self._move()
+    def phases(self) -> tuple[str, ...]:
+        return ("move", "look")
+
+    def advance(self) -> Phases:
+        if not self.values["auto"]:
+            yield self.last or "move", "Nothing moves by itself: press Move or Look."
+        elif self.last == "move":
+            yield "look", self._look()
+        else:
+            yield "move", self._move()
 
     def changed(self, name: str, value: Any) -> None:
         if name == "move":
-            self._move()
+            self.tell(self._move())
         elif name == "look":
-            self._look()
-        if name in ("move", "look"):
-            self.tell(f"{self.report or 'Moved'}: the Gaussian lacks {self.gaussian:.2f} nats.")
+            self.tell(self._look())
 
-    def _move(self) -> None:
+    def held(self, name: str, x: float, y: float, touch: str) -> None:
+        if name != "robot":
+            super().held(name, x, y, touch)
+        elif touch == "drag":
+            self.robot = float(np.clip(x, *SPAN))
+
+    def _move(self) -> str:
+        """The robot drives a metre, and all three beliefs with it."""
         if not SPAN[0] + 1 < self.robot < SPAN[1] - 1:
             self.forward = self.robot < sum(SPAN) / 2
         u, sigma = (1.0 if self.forward else -1.0), self.values["sigma_u"]
         self.robot += u + sigma * float(self.rng.standard_normal())
-        self.robot = float(np.clip(self.robot, LOW + 1, HIGH - 1))
+        self.robot = float(np.clip(self.robot, -2.0, 12.0))
         for cells in (self.exact, self.grid):
             cells.move(u, sigma**2)
         self.mean, self.var = self.mean + u, self.var + sigma**2
-        self.moved, self.report = True, ""
+        self.last, self.report = "move", ""
         self._measure()
+        return f"Move: {u:+.0f} m; the Gaussian's deviation grows to {self.var**0.5:.2f} m."
 
-    def _look(self) -> None:
+    def _look(self) -> str:
+        """The robot looks, and all three beliefs are corrected."""
         said = []
         if self.values["sense"] != "beacon":
             door = bool(self.rng.random() < (HIT if np.floor(self.robot) in DOORS else FALSE))
@@ -194,9 +209,13 @@ class Kalman(Scene):
             )
             self.mean, self.var = float(bel.mean[0]), float(bel.Sigma[0, 0])
             said.append(f"beacon {z:.1f} m")
-        self.moved, self.report = False, ", ".join(said)
+        self.last, self.report = "look", ", ".join(said)
         self.looks += 1
         self._measure()
+        return (
+            f"Look: {self.report}; the Gaussian lacks {self.gaussian:.2f} nats, "
+            f"the cells {self.cells:.2f}."
+        )
 
     def _match(self, door: bool) -> None:
         """Mean and variance of the Gaussian times the report's likelihood."""
@@ -219,7 +238,7 @@ class Kalman(Scene):
 
     def seen(self) -> bool:
         """Was the last thing a look, and not the first?"""
-        return self.looks > 2 and not self.moved
+        return self.looks > 2 and self.last == "look"
 
     def at_mean(self) -> float:
         """The exact belief at the Gaussian's mean, as a share of its peak."""
@@ -243,6 +262,7 @@ class Kalman(Scene):
         doors = np.array(DOORS, float)
         pen.bars("landmarks", doors, doors + 1, 0.15, 0.75, alpha=0.7)
         pen.segments("wall", *wide[:1], 0.15, wide[1], 0.15, width=2)
+        pen.handle("robot", self.robot, 0.35)
         pen.robots("truth", self.robot, 0.35, 0.0 if self.forward else np.pi, radius=0.4)
         pen.text("ink", self.robot, 0.9, self.report, size=13, anchor=0)
         exact, grid = self.exact, self.grid
