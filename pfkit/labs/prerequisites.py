@@ -1,4 +1,4 @@
-"""Before the course: five questions, to see whether the course starts where you stand."""
+"""Before the course: ten questions, to see whether the course starts where you stand."""
 
 import math
 
@@ -109,6 +109,101 @@ heading = Choice("""What is the average of the headings 359° and 1°?
        = That is how far the two are apart.
     d  there is none
        = Two opposite headings have none; these two are nearly the same.""")
+
+
+MORE = Question("What the chapters use")
+
+density = Choice("""A place is uniform over 2 cm. How large is its density there, per metre?
+    a  0.02
+       = That is the width. Density times width must be one.
+    b* 50
+       = Yes: 50 per metre times 0.02 m is one; a density may exceed one, a probability may not.
+    c  1, because a probability cannot exceed 1
+       = A density is no probability: it becomes one when it is multiplied by a width.
+    d  0, because a single place has no probability
+       = The probability of a single place is zero, but its density is not.""")
+
+turned = Numeric(
+    """The vector (2, 1), turned to the left by 90 degrees
+    Where does the x axis point after the turn? And the y axis?
+    (x cos a - y sin a, x sin a + y cos a), with cos a = 0 and sin a = 1.
+    (-1, 2).""",
+    (-1.0, 2.0),
+    tol=0.01,
+    names=("x", "y"),
+)
+turned.wrong("""to-the-right: turns to the right
+    Counterclockwise is to the left.
+    The x axis turns into the y axis.
+    (-y, x)""")((1.0, -2.0))
+turned.wrong("""exchanged: exchanges the two coordinates, which is a mirror
+    Where does (1, 0) go? And (0, 1)?
+    (0, 1) goes to (-1, 0): one sign changes.
+    (-y, x)""")((1.0, 2.0))
+
+summed = Numeric(
+    """Variance of a + b, and of a - b, for variances 4 and 1 and a covariance of 1.5
+    Independent errors only add their variances. These err together.
+    Var(a + b) = Var a + Var b + 2 Cov(a, b).
+    4 + 1 + 3, and 4 + 1 - 3.""",
+    (8.0, 2.0),
+    tol=0.01,
+    names=("variance of a + b", "variance of a - b"),
+)
+summed.wrong("""independent: adds the variances only
+    Do the two err independently?
+    Their covariance counts twice.
+    5 + 2 * 1.5, and 5 - 2 * 1.5""")((5.0, 5.0))
+summed.wrong("""once: counts the covariance once
+    How often does the mixed term occur in (a + b)²?
+    Twice: 2 a b.
+    5 + 2 * 1.5""")((6.5, 3.5))
+summed.wrong("""subtracts: subtracts the variances in the difference
+    Does the error of b make a - b better known?
+    The sign is squared away; only the mixed term keeps it.
+    4 + 1 - 3""")((8.0, 0.0))
+
+pooled = Numeric(
+    """Two measured lengths, 10 m with variance 1 m² and 13 m with variance 2 m²: mean and variance
+         of the product of their densities
+    Weigh each by one over its variance.
+    The weights are 1 and 1/2, their sum 3/2.
+    (10 + 13 / 2) / (3/2), and 1 / (3/2).""",
+    (11.0, 2 / 3),
+    tol=0.01,
+    names=("mean", "variance"),
+)
+pooled.wrong("""plain-mean: takes the plain mean of the two
+    Which of them is better known?
+    One over the variance is the weight.
+    (10 * 1 + 13 * 0.5) / 1.5""")((11.5, 2 / 3))
+pooled.wrong("""swapped: weighs the worse one more
+    A large variance: much or little weight?
+    One over it.
+    (10 * 1 + 13 * 0.5) / 1.5""")((12.0, 2 / 3))
+pooled.wrong("""adds: adds the variances
+    Do two measurements together know less than one?
+    The weights add, 1 + 1/2; the variance is one over that.
+    1 / 1.5""")((11.0, 3.0))
+
+scaled = Numeric(
+    """x is uniform from 0 to 1 and y = 3 x. The density of y at 2, and its probability to lie
+         between 2 and 2.3
+    Over which range is y spread, and evenly?
+    From 0 to 3. The density must integrate to one.
+    1/3, and 1/3 times 0.3.""",
+    (1 / 3, 0.1),
+    tol=0.003,
+    names=("density", "probability"),
+)
+scaled.wrong("""unchanged: keeps the density of x
+    What is 1 times the length of the new range?
+    Stretched by 3, the density falls to a third.
+    1 / 3""")((1.0, 0.3))
+scaled.wrong("""wrong-way: multiplies by the stretch instead of dividing
+    Does a stretched density become higher or lower?
+    Its area must stay one.
+    1 / 3""")((3.0, 0.9))
 
 
 LAB = Lab.of(__name__, "Prerequisites")

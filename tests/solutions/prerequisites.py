@@ -16,3 +16,18 @@ landmark = (1, 5, 0)
 
 # %% heading
 heading = "b"
+
+# %% density
+density = "b"
+
+# %% turned
+turned = (-1, 2)
+
+# %% summed
+summed = (4 + 1 + 2 * 1.5, 4 + 1 - 2 * 1.5)
+
+# %% pooled
+pooled = ((10 + 13 / 2) / 1.5, 1 / 1.5)
+
+# %% scaled
+scaled = (1 / 3, 0.3 / 3)
