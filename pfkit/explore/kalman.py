@@ -257,7 +257,7 @@ class Kalman(Scene):
         }
 
     def draw(self, pen: Pen) -> None:
-        wide = (-4.0, 14.0)
+        wide = (-5.0, 16.0)
         pen.view((0.02, 0.74, 0.96, 0.22), wide, (0, 1), frame=False)
         doors = np.array(DOORS, float)
         pen.bars("landmarks", doors, doors + 1, 0.15, 0.75, alpha=0.7)
@@ -274,9 +274,10 @@ class Kalman(Scene):
         right = np.minimum(grid.x[shown] + grid.width / 2, wide[1])
         pen.bars("measurement", left, right, 0, grid.p[shown] / grid.width, alpha=0.35)
         seen = (exact.x > wide[0]) & (exact.x < wide[1])
-        pen.area("exact", exact.x[seen], exact.p[seen] / FINE, alpha=0.35)
+        shape = np.pad(exact.p[seen] / FINE, 1)  # from the axis and back to it
+        pen.area("exact", np.pad(exact.x[seen], 1, mode="edge"), shape, alpha=0.35)
         pen.line("exact", exact.x[seen], exact.p[seen] / FINE, width=2)
         pen.line("estimate", exact.x[seen], np.minimum(curve[seen], top), width=2.5, dash=6)
         pen.segments("truth", self.robot, 0, self.robot, 0.06 * top, width=3)
         pen.text("ink", wide[0] + 0.2, 0.9 * top, "area: exact; bars: cells; dashed: Gaussian", 12)
-        pen.ticks(0, np.arange(-4, 15, 2))
+        pen.ticks(0, np.arange(-4, 17, 2))
