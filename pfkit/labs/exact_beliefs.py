@@ -432,7 +432,7 @@ def _corridors(rng):
     claim="a filter that keeps mean and variance gives the robot's place less than the exact one",
     test="mean and scatter of both logarithms are those of a right experiment, in corridors of "
     "our choice",
-    margin="5 standard errors of the difference in each of three corridors",
+    margin="5.5 standard errors of the difference in each of three corridors",
 )
 def gauss_x(doors, rates, steps, rng, runs):
     cell, z = robots(doors, steps, rng, runs, rates)
@@ -446,7 +446,7 @@ def gauss_x(doors, rates, steps, rng, runs):
     return np.log([exact[own], gauss[own]])
 
 
-gauss_x.holds("both follow doors and looks", same_mean(5))
+gauss_x.holds("both follow doors and looks", same_mean(5.5))
 gauss_x.holds("both scatter as robots do", same_scatter(2.5))
 gauss_x.wrong("""exchanged: gives the Gaussian first and the exact belief second
     Which of your two rows is larger on average?
