@@ -3,7 +3,7 @@
 A cell is folded when more than half of its lines import, or when more than half draw: a line draws
 if its statement speaks of a figure, of axes or of `plotting`. Answer cells and what checks them
 stay open, and so does a cell with the tag `show-input`. A cell that a notebook folds itself
-(`hide-cell`, `hide-input`) stays as it is.
+(`hide-input`) gets such a line as well; `hide-cell` stays as it is.
 """
 
 from __future__ import annotations
@@ -17,7 +17,8 @@ from sphinx.application import Sphinx
 DRAWS = re.compile(r"fig|figure|ax|axes|plt|plotting|panels")
 STAYS = {"show-input"}
 PROMPTS = {"imports": ("Show what is imported", "Hide what is imported"),
-           "drawing": ("Show the code that draws", "Hide the code that draws")}  # fmt: skip
+           "drawing": ("Show the code that draws", "Hide the code that draws"),
+           "": ("Show the code", "Hide the code")}  # fmt: skip
 
 
 def imports(statement: ast.stmt) -> bool:
@@ -54,13 +55,17 @@ def kind(source: str) -> str:
 def fold(app: Sphinx, doctree: nodes.document) -> None:
     """Mark the cells of a notebook that fold."""
     for cell in doctree.findall(nodes.container):
-        if cell.get("nb_element") != "cell_code" or cell.get("hide_mode") or not cell.children:
+        if cell.get("nb_element") != "cell_code" or not cell.children:
             continue
+        by_tag = cell.get("hide_mode", "")
         about = cell.get("cell_metadata", {})
         if STAYS & set(about.get("tags", [])) or {"answer", "check"} & set(about):
             continue
         source = cell.children[0]
-        if source.get("nb_element") == "cell_code_source" and (found := kind(source.astext())):
+        if source.get("nb_element") != "cell_code_source" or by_tag not in ("", "input"):
+            continue
+        found = kind(source.astext())
+        if found or by_tag:
             cell["hide_mode"] = "input"
             cell["prompt_show"], cell["prompt_hide"] = PROMPTS[found]
 

@@ -7,6 +7,8 @@ import json
 import fold
 import pytest
 from browser import ROOT
+from docutils import nodes
+from docutils.utils import new_document
 
 CELLS = {
     "imports": "import numpy as np\n\nimport pfkit as pf\nplotting.use_style()",
@@ -41,3 +43,28 @@ def test_chapters_fold_between_a_fifth_and_two_thirds_of_their_code():
         for source in code:
             lines[bool(fold.kind(source))] += source.count("\n") + 1
         assert 0.2 < lines[True] / sum(lines.values()) < 0.67, (path.name, lines)
+
+
+def cell(source: str, **attributes) -> nodes.document:
+    """A document with one code cell."""
+    document = new_document("")
+    inner = nodes.container("", nodes.literal_block(source, source))
+    inner["nb_element"] = "cell_code_source"
+    document += nodes.container("", inner, nb_element="cell_code", **attributes)
+    return document
+
+
+@pytest.mark.parametrize(
+    "mode, source, line",
+    [
+        ("input", "x = 1", "Show the code"),
+        ("input", CELLS["drawing"], "Show the code that draws"),
+        ("", CELLS["imports"], "Show what is imported"),
+        ("", "x = 1", None),
+        ("all", CELLS["drawing"], None),
+    ],
+)
+def test_what_folds_says_what_it_is(mode, source, line):
+    document = cell(source, **({"hide_mode": mode} if mode else {}))
+    fold.fold(None, document)
+    assert document.children[0].get("prompt_show") == line
