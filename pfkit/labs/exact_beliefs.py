@@ -410,8 +410,8 @@ def even(runs):
 
 def _corridors(rng):
     """Three corridors: doors, the detector's rates, and the number of looks: one, some, many."""
-    cells = [rng.choice(10, size=3, replace=False) for _ in range(3)]
-    looks = [1, int(rng.integers(3, 5)), int(rng.integers(6, 8))]
+    cells = [rng.choice(10, size=n, replace=False) for n in (2, 4, 5)]
+    looks = [1, int(rng.integers(5, 7)), int(rng.integers(9, 11))]
     rates = [(0.95, 0.02), (0.8, 0.1), (0.9, 0.05)]
     return [
         (np.isin(np.floor(X), c), pair, k) for c, pair, k in zip(cells, rates, looks, strict=True)
@@ -447,7 +447,7 @@ def gauss_x(doors, rates, steps, rng, runs):
 
 
 gauss_x.holds("both follow doors and looks", same_mean(5.5))
-gauss_x.holds("both scatter as robots do", same_scatter(2.5))
+gauss_x.holds("both scatter as robots do", same_scatter(1.6))
 gauss_x.wrong("""exchanged: gives the Gaussian first and the exact belief second
     Which of your two rows is larger on average?
     The exact belief gives the robot's place more.

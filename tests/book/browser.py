@@ -76,6 +76,12 @@ def pages(root: Path = HTML) -> list[str]:
     return sorted(path.relative_to(root).as_posix() for path in full)
 
 
+def chapter(topic: str) -> str:
+    """Return the page of a chapter, whatever its number."""
+    (source,) = ROOT.glob(f"notebooks/[0-9][0-9]_{topic}.ipynb")
+    return f"notebooks/{source.stem}.html"
+
+
 class _Quiet(http.server.SimpleHTTPRequestHandler):
     def log_message(self, *args: Any) -> None:
         pass

@@ -11,7 +11,7 @@ HTML_PAGES = browser.pages()
 PAGES = [
     "book/map.html",
     "book/glossary.html",
-    "notebooks/08_particle_filter.html",
+    browser.chapter("particle_filter"),
     "notebooks/labs/lab3_particle_filter.html",
 ]
 built = pytest.mark.skipif(not HTML_PAGES, reason="the book is not built: run make book first")

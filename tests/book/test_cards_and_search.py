@@ -12,7 +12,7 @@ import search_prose
 from docutils import nodes
 from sphinx.search.en import SearchEnglish
 
-CHAPTER = "notebooks/08_particle_filter.html"
+CHAPTER = browser.chapter("particle_filter")
 LINK = ".bd-article a[href*='glossary.html#term-']"
 built = pytest.mark.skipif(not browser.pages(), reason="the book is not built: run make book first")
 

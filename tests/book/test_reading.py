@@ -14,7 +14,7 @@ pytestmark = [
     pytest.mark.skipif(not CHAPTERS, reason="the book is not built: run make book first"),
 ]
 NUMBERED = [p for p in CHAPTERS if p.split("/")[1][0].isdigit()]  # labs may have longer lines
-CHAPTER = "notebooks/08_particle_filter.html"
+CHAPTER = browser.chapter("particle_filter")
 # Characters of each line of prose that is followed by another line of its paragraph.
 LINES = """() => [...document.querySelectorAll('.bd-article section > p')].flatMap((p) => {
   const tops = [], walk = document.createTreeWalker(p, NodeFilter.SHOW_TEXT);

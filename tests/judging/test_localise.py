@@ -66,16 +66,19 @@ def spoiled(log, share, rng):
 
 @pytest.mark.slow
 def test_a_global_start_survives_false_measurements(twin, monkeypatch):
-    """One in five is false, the first one, too; four seeds; errors from 20 s on."""
+    """One in five is false, the first one, too; twelve seeds; errors from 20 s on.
+
+    Of sixteen seeds one was lost when this was written; more than two in twelve are too many.
+    """
     first, last = np.searchsorted(twin.t, (100, 145))
     log = spoiled(twin[first:last], 0.2, np.random.default_rng(100))
 
     def rmse():
         settings = settings_for(log)
-        track = localise(log, np.random.default_rng(0), "global", 1500, 4, settings=settings)
+        track = localise(log, np.random.default_rng(0), "global", 1500, 12, settings=settings)
         return score(log, track.estimate, settings.limit, track.first + 20).rmse
 
-    assert (rmse() < 0.2).all()
+    assert np.sum(rmse() < 0.2) >= 10
     monkeypatch.setattr("pfkit.judging.localise._with_outliers", lambda sensor, world: sensor)
     assert rmse().mean() > 0.5  # what happens to a filter that believes every measurement
 

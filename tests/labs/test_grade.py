@@ -79,7 +79,7 @@ def test_one_row_each_and_exit_code_zero(batch):
     top, cases, ran, _, _ = batch
     assert ran.returncode == 0, ran.stderr
     assert len(cases) >= 30 and set(table(top / "grades.csv")) == set(cases)
-    assert f"{len(cases)}/{len(cases)}" in ran.stderr, "the progress bar reaches its end"
+    assert f"{len(cases)} submissions to grade" in ran.stderr  # a bar only where one can be seen
 
 
 def test_each_has_its_status(batch):
