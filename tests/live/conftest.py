@@ -163,7 +163,7 @@ def address(site):
         yield where
 
 
-@pytest.fixture(scope="session")
+@pytest.fixture(scope="module")
 def open_page(chromium, address):
     """Open a page of the small book: open_page("scenes.html", file=False, **context options)."""
     contexts = []
