@@ -80,6 +80,10 @@ MENDS = (
     ),
     Mend(re.compile(r'(<summary) aria-label="Toggle hidden content"'), r"\1", expected=False),
     Mend(re.compile(r'<div role="list" (class="citation-list")'), r"<div \1", expected=False),
+    # The list of modules puts lists into lists without an item around them; it reads well flat.
+    Mend(re.compile(r"(?<=</li>)\s*<ul>(?=\s*<li>)"), "", expected=False),
+    Mend(re.compile(r"</ul>\s*(?=<li>)"), "", expected=False),
+    Mend(re.compile(r"(</ul>)(?:\s*</ul>)+"), r"\1", expected=False),
     Mend(
         re.compile(r'<summary>(?=<span class="toctree-toggle")'),
         '<summary aria-label="Pages of this section">',

@@ -218,5 +218,5 @@ class Square(Scene):
             ends = np.array([(x, y) for w, x, y in self.ends if w == way]).reshape(-1, 2).T
             if ends.size:
                 pen.symbols(style, shape, *np.clip(ends, -CHART, CHART), size=8)
-        pen.text("ink", -CHART, CHART + 0.1, "where squares end: o ccw, square cw", 11)
+        pen.text("ink", -CHART, CHART + 0.1, "ends: o ccw, square cw", 10)
         pen.text("ink", 0.05 - CHART, 0.1 - CHART, f"{100 * CHART:.0f} cm to the edge", size=10)

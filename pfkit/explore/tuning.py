@@ -189,7 +189,7 @@ class Tuning(Scene):
         }
 
     def draw(self, pen: Pen) -> None:
-        pen.view((0.07, 0.14, 0.40, 0.76), LOG_Q, LOG_R)
+        pen.view((0.11, 0.14, 0.36, 0.76), LOG_Q, LOG_R)
         shade = np.clip(self.surface / (2 * SENSOR), 0, 1)
         pen.image("exact", shade, LOG_Q, LOG_R)
         q, r = np.linspace(*LOG_Q, GRID), np.linspace(*LOG_R, GRID)
@@ -198,8 +198,8 @@ class Tuning(Scene):
         at = self.values["log_q"], self.values["log_r"]
         pen.symbols("estimate", "cross", *np.reshape(at, (2, 1)), size=12)
         pen.handle("pair", *at)
-        pen.text("ink", LOG_Q[0], LOG_R[1] + 0.06, "sensor noise against process noise, logs", 11)
-        pen.text("ink", LOG_Q[0] + 0.05, LOG_R[0] + 0.06, "dark: large error; star: least", 10)
+        pen.text("ink", LOG_Q[0], LOG_R[1] + 0.06, "sensor against process noise", 10)
+        pen.text("ink", LOG_Q[0] + 0.05, LOG_R[0] + 0.06, "dark: large error", 10)
         pen.ticks(0, np.arange(-1.5, 0.6, 0.5))
         pen.ticks(1, np.arange(-1, 0.8, 0.5))
         t = np.arange(1, T + 1)
@@ -207,5 +207,5 @@ class Tuning(Scene):
         pen.line("truth", t, self.truth, width=2)
         pen.points("measurement", t, self.z, size=5)
         pen.line("estimate", t, np.clip(self.track, -1, SPEED * T + 2), width=2, dash=5)
-        pen.text("ink", 1, SPEED * T + 2.3, "target (line), readings, filter (dashes)", size=11)
+        pen.text("ink", 1, SPEED * T + 2.3, "target line, filter dashes", size=10)
         pen.ticks(0, np.arange(0, T + 1, 10))
