@@ -70,7 +70,9 @@
   let bar, summary, note;
 
   function total() {
-    const counts = tasks.map(progress);
+    const seen = new Set(); // an explorable that stands on two pages counts once
+    const first = ([panel]) => !seen.has(panel) && seen.add(panel);
+    const counts = tasks.map((t) => progress({ ...t, missions: t.missions.filter(first) }));
     bar.value = counts.reduce((sum, c) => sum + c.done, 0);
     bar.max = counts.reduce((sum, c) => sum + c.all, 0);
     const text = `${bar.value} of ${bar.max} questions and missions done.`;
