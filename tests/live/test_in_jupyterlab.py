@@ -80,7 +80,7 @@ def test_a_control_moved_in_jupyterlab_is_followed(chromium, jupyter):
     x = "document.querySelector('.pf-explorable').pfExplorable"
     tab.wait_for_function(f"{x} && {x}.mode === 'live' && {x}.ticks > 2", timeout=60_000)
     assert tab.evaluate(f"{x}.values.n") == 5
-    slider = root.get_by_label("Teeth n")
+    slider = root.get_by_role("slider", name="Teeth n")
     slider.focus()
     slider.press("ArrowRight")
     tab.wait_for_function(f"{x}.values.n === 6 && {x}.report.values.n === 6", timeout=30_000)
