@@ -447,7 +447,7 @@ def gauss_x(doors, rates, steps, rng, runs):
 
 
 gauss_x.holds("both follow doors and looks", same_mean(5.5))
-gauss_x.holds("both scatter as robots do", same_scatter(1.6))
+gauss_x.holds("both scatter as robots do", same_scatter(3.0))
 gauss_x.wrong("""exchanged: gives the Gaussian first and the exact belief second
     Which of your two rows is larger on average?
     The exact belief gives the robot's place more.

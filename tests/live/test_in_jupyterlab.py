@@ -84,7 +84,7 @@ def test_a_control_moved_in_jupyterlab_is_followed(chromium, jupyter):
     slider.focus()
     slider.press("ArrowRight")
     tab.wait_for_function(f"{x}.values.n === 6 && {x}.report.values.n === 6", timeout=30_000)
-    tab.locator(".pf-canvas").scroll_into_view_if_needed()  # what nobody sees stands still
+    root.get_by_role("application").scroll_into_view_if_needed()  # what nobody sees stands still
     tab.wait_for_function(f"{x}.ticks > 2")
     assert tab.evaluate(f"{x}.report.readouts[0].draws") > 0
     context.close()
