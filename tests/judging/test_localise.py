@@ -79,7 +79,7 @@ def test_a_global_start_survives_false_measurements(twin, monkeypatch):
         return score(log, track.estimate, settings.limit, track.first + 20).rmse
 
     assert np.sum(rmse() < 0.2) >= 10
-    monkeypatch.setattr("pfkit.judging.localise._with_outliers", lambda sensor, world: sensor)
+    monkeypatch.setattr("pfkit.judging.localise._with_outliers", lambda log, sensor: sensor)
     assert rmse().mean() > 0.5  # what happens to a filter that believes every measurement
 
 
