@@ -175,9 +175,10 @@ responsibility.wrong("""best: looks at the best particle only
 
 BREAK = Question("Experiments")
 
-MOTION = pf.CircleTarget(sigma=1.4, sigma_theta=0.01)
-FALSE_HALF = target.target_log("circle", "outliers")[:60]
-CLEAN = target.target_log("circle", "low")[:60]
+# As the chapter has them: a worked answer runs there.
+motion, honest = pf.CircleTarget(sigma=1.4, sigma_theta=0.01), pf.Position(sigma=5.0)
+log = target.target_log("circle", "outliers")[:300]
+clean = target.target_log("circle", "low")[:100]
 
 
 @experiment(
@@ -194,8 +195,8 @@ CLEAN = target.target_log("circle", "low")[:60]
     margin="the mean likelihood of an honest report would have to be thirty times its mean",
 )
 def lock_x(rng, gate=1e-4, known=False):
-    bel = target.around(FALSE_HALF.start, 1000, rng) if known else target.anywhere(1000, rng, D=3)
-    return target.track(FALSE_HALF, bel, MOTION, pf.Position(5.0), rng, gate=gate).rejected.mean()
+    bel = target.around(log.start, 1000, rng) if known else target.anywhere(1000, rng, D=3)
+    return target.track(log[:60], bel, motion, honest, rng, gate=gate).rejected.mean()
 
 
 lock_x.holds("a share between 0 and 1", lambda x: ((x >= 0) & (x <= 1)).all())
@@ -230,9 +231,9 @@ lock_x.wrong("""no-gate: leaves the gate open
 def ushape_x(rng, gate=1e-4, scale=np.sqrt):
     found = []
     for variance in (1e-4, 1000.0, 5000.0):
-        bel = target.around(CLEAN.start, 300, rng)
+        bel = target.around(clean.start, 300, rng)
         sensor = pf.Position(scale(variance))
-        found.append(target.track(CLEAN, bel, MOTION, sensor, rng, gate=gate).rejected.mean())
+        found.append(target.track(clean[:60], bel, motion, sensor, rng, gate=gate).rejected.mean())
     return found
 
 

@@ -1,14 +1,12 @@
 """A real robot. Questions on reading, calibrating and judging recorded logs."""
 
-import json
-from functools import cache
-from importlib.resources import files
-
 import numpy as np
 
 import pfkit as pf
-from pfkit.explore.mower import recorded
 from pfkit.labs import Choice, Lab, Numeric, Prediction, Question, Text, code, experiment
+from pfkit.labs import real_robot_logs as lab
+from pfkit.labs.real_robot_logs import minute as minute
+from pfkit.labs.real_robot_logs import stretch as stretch
 
 BY_HAND = Question("By hand", id="1")
 
@@ -186,12 +184,6 @@ biased = Prediction("""Ranges that read three metres long, and a model without a
     d  the filter loses the mower for good""")
 
 
-def minute():
-    """The first minute of Plaza 2, one step for each range (packed, so that it runs in a page)."""
-    log = recorded()["log"]
-    return log[: int(np.searchsorted(log.t, 60.0))]
-
-
 def _two_columns(run, rng, runs):
     found = np.array([run(rng) for _ in range(runs)], dtype=float)
     if found.shape != (runs, 2):
@@ -214,7 +206,7 @@ def _two_columns(run, rng, runs):
     margin="the ratio's median lies 10 of its own standard deviations above 1.6",
 )
 def biased_x(rng):
-    log = minute()
+    log = lab.minute()
     sensor = pf.Range(log.world, sigma_r=3.0, nu=4)
     bel = pf.gaussian_prior(500, log.start, (0.2, 0.2, 0.02), rng)
     history = pf.run(log, bel, pf.ComposedMotion(), sensor, rng)
@@ -247,19 +239,6 @@ lost = Prediction("""Thirty global starts with 1,000 particles, weighed plainly
     d  all thirty""")
 
 
-@cache
-def _stretch():
-    raw = json.loads(files("pfkit.labs").joinpath("real_robot_stretch.json").read_text("ascii"))
-    world = pf.LandmarkMap(np.array(raw["landmarks"]), raw["ids"], raw["bounds"])
-    z = [np.array(zk).reshape(3, -1) for zk in raw["z"]]
-    return pf.Log(np.array(raw["t"]), np.array(raw["u"]), z, np.array(raw["truth"]), world=world)
-
-
-def stretch():
-    """Ten seconds of the twin, one step for each picture; no start is known."""
-    return _stretch()
-
-
 @experiment(
     """Found from anywhere
     Start with pf.uniform_prior(1000, log.world, rng) on lab.stretch().
@@ -275,7 +254,7 @@ def stretch():
     margin="a run fails with probability below 0.07; seven failures or more of 15: 4e-5",
 )
 def lost_x(rng, staged=True):
-    log = stretch()
+    log = lab.stretch()
     sensor = pf.RangeBearing(log.world, sigma_r=0.45, sigma_phi=0.02, nu=4)
     bel = pf.uniform_prior(1000, log.world, rng)
     for _, u, z, _ in log:

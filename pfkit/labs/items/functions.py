@@ -102,15 +102,29 @@ class Function(Item):
         return self.reference
 
     def worked(self) -> str:
-        """The reference's source, without what declares the item around it."""
+        """The reference's source, without what declares the item, after the helpers it calls."""
         source = textwrap.dedent(inspect.getsource(self.reference))
         for node in ast.walk(ast.parse(source)):
             if isinstance(node, ast.FunctionDef):
                 lines = source.splitlines()[node.lineno - 1 : node.end_lineno]
-                return textwrap.dedent("\n".join(lines))
+                source = textwrap.dedent("\n".join(lines))
+                break
             if isinstance(node, ast.Lambda):
-                return f"{self.id} = {ast.unparse(node)}"
-        return source
+                source = f"{self.id} = {ast.unparse(node)}"
+                break
+        return "\n\n\n".join([*_helpers(self.reference, source), source])
+
+
+def _helpers(function: Callable[..., Any], source: str) -> list[str]:
+    """The sources of its module's own helpers that some source calls, and of those they call."""
+    names = {node.id for node in ast.walk(ast.parse(source)) if isinstance(node, ast.Name)}
+    found: dict[str, None] = {}  # in order, each once
+    for name in sorted(name for name in names if name.startswith("_")):
+        helper = getattr(function, "__globals__", {}).get(name)
+        if inspect.isfunction(helper) and helper is not function:
+            text = inspect.getsource(helper).rstrip()
+            found |= dict.fromkeys([*_helpers(helper, text), text])
+    return list(found)
 
 
 @dataclass(eq=False)
